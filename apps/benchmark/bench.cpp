@@ -35,14 +35,14 @@ Sample sample(const Work& work, ClockKind clock, std::int64_t calls) {
 }  // namespace
 
 double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
 double Timed::median() const { return median_of(times); }
-double Timed::least() const { return *std::min_element(times.begin(), times.end()); }
-double Timed::largest() const { return *std::max_element(times.begin(), times.end()); }
+double Timed::least() const { return *std::ranges::min_element(times); }
+double Timed::largest() const { return *std::ranges::max_element(times); }
 
 Timed time_case(const BenchmarkCase& benchmark, const Timing& timing) {
   const Work work = benchmark.prepare(timing.threads);

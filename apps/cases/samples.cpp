@@ -28,7 +28,7 @@ Polygon first_valid(const Make& make, const Accept& accept) {
 std::vector<double> sorted_angles(Random& random, int n) {
   std::vector<double> angles(n);
   for (double& a : angles) a = random.uniform(0, 2 * M_PI);
-  std::sort(angles.begin(), angles.end());
+  std::ranges::sort(angles);
   return angles;
 }
 

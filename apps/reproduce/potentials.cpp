@@ -36,8 +36,8 @@ std::vector<std::string> list(const Names& names, Name name) {
 }
 
 const PotentialPiece* piece_of(const PotentialMap& map, int edge) {
-  const auto found = std::find_if(map.pieces.begin(), map.pieces.end(),
-                                  [&](const PotentialPiece& p) { return p.edge == edge; });
+  const auto found =
+      std::ranges::find_if(map.pieces, [&](const PotentialPiece& p) { return p.edge == edge; });
   return found == map.pieces.end() ? nullptr : &*found;
 }
 

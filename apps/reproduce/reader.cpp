@@ -89,7 +89,7 @@ Vec2 FigureReader::range(const JsonValue& value) {
 }
 
 size_t FigureReader::index_of(const std::vector<std::string>& list, const std::string& name) {
-  return static_cast<size_t>(std::find(list.begin(), list.end(), name) - list.begin());
+  return static_cast<size_t>(std::ranges::find(list, name) - list.begin());
 }
 
 const std::vector<std::string>& FigureReader::holding(
@@ -145,8 +145,8 @@ std::vector<std::string> figure_names(const std::string& data) {
     const bool of_paper = name.starts_with("fig-");
     return std::tuple(!of_paper, name.substr(0, from), to - from, name.substr(from));
   };
-  std::sort(names.begin(), names.end(),
-            [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+  std::ranges::sort(names,
+                    [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
   return names;
 }
 

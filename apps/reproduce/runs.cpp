@@ -171,8 +171,8 @@ int FigureRuns::run(const std::string& figure, const FigureStudy& study, bool qu
   if (planned.over) return exit_code::done;
   // Sweeps see themselves whether their scenes have changed.
   const FigureStudy::Commands& commands = study.of(quick);
-  const bool sweeps = std::all_of(commands.begin(), commands.end(),
-                                  [](const auto& command) { return command[0] == "sweep"; });
+  const bool sweeps =
+      std::ranges::all_of(commands, [](const auto& command) { return command[0] == "sweep"; });
   if (planned.ended && !sweeps) {
     keep(figure, study.name, "done");
     return exit_code::done;

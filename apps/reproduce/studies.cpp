@@ -35,7 +35,7 @@ FigureStudy read_study(const JsonReader& in, const JsonValue& value) {
   const JsonValue& name = object.required("name", "name of the folder of results");
   study.name = in.string(name);
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-'; };
-  if (study.name.empty() || !std::all_of(study.name.begin(), study.name.end(), plain)) {
+  if (study.name.empty() || !std::ranges::all_of(study.name, plain)) {
     in.fail(name, "must consist of letters, digits and hyphens");
   }
   study.commands = read_commands(in, object.required("commands", "array of commands"));

@@ -49,10 +49,10 @@ class Table {
     for (size_t i = 1; i < rows_.size(); ++i) {
       const auto meets = [&](const auto& condition) {
         const std::string& cell = this->cell(rows_[i], condition.first);
-        return std::any_of(condition.second->begin(), condition.second->end(),
-                           [&](const std::string& content) { return fits(cell, content); });
+        return std::ranges::any_of(*condition.second,
+                                   [&](const std::string& content) { return fits(cell, content); });
       };
-      if (std::all_of(conditions.begin(), conditions.end(), meets)) rows.push_back(&rows_[i]);
+      if (std::ranges::all_of(conditions, meets)) rows.push_back(&rows_[i]);
     }
     return rows;
   }
@@ -94,7 +94,7 @@ TablePoint share_point(double x, size_t events, size_t trials) {
 TablePoint point_of(Kind kind, double x, const std::vector<double>& values) {
   if (kind == Kind::share) {
     const auto is_true = [](double v) { return v != 0; };
-    const auto events = std::count_if(values.begin(), values.end(), is_true);
+    const auto events = std::ranges::count_if(values, is_true);
     return share_point(x, static_cast<size_t>(events), values.size());
   }
   const MeanEstimate e = estimate_mean(values);
@@ -193,8 +193,8 @@ std::vector<TablePoint> points_of(const TableSource& source, const std::string& 
   }
   for (const auto& [at, values] : groups) points.push_back(point_of(source.kind, at, values));
   if (points.empty()) throw SceneError(file, 0, "", "has no row with the values that are shown");
-  std::stable_sort(points.begin(), points.end(),
-                   [](const TablePoint& a, const TablePoint& b) { return a.x < b.x; });
+  std::ranges::stable_sort(points,
+                           [](const TablePoint& a, const TablePoint& b) { return a.x < b.x; });
   return points;
 }
 
@@ -231,9 +231,8 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
   };
   size_t common = 0, at_least = 0;
   for (const TablePoint& a : first) {
-    const auto found = std::find_if(second.begin(), second.end(), [&](const TablePoint& b) {
-      return std::abs(b.x - a.x) <= 1e-9 * std::abs(a.x);
-    });
+    const auto found = std::ranges::find_if(
+        second, [&](const TablePoint& b) { return std::abs(b.x - a.x) <= 1e-9 * std::abs(a.x); });
     if (found == second.end()) continue;
     const TablePoint& b = *found;
     ++common;

@@ -121,8 +121,7 @@ void DegreesOfFreedom::add_nodes(const DeformableBody& body, std::span<const dou
   }
   if (!body.displacement.empty()) {
     displaced_.resize(layout_.size());
-    std::copy(body.displacement.begin(), body.displacement.end(),
-              &displaced_[layout_.node(body.first_node)]);
+    std::ranges::copy(body.displacement, &displaced_[layout_.node(body.first_node)]);
   }
   add_supports(body);
 }

@@ -38,13 +38,12 @@ std::vector<double> node_rates(const Model& model, const DeformableBody& body) {
 
 bool MassDamping::needed(const Model& model) {
   return model.contact.mass_damping > 0 ||
-         std::any_of(model.deformables.begin(), model.deformables.end(),
-                     [&](const DeformableBody& body) {
-                       const std::vector<MaterialIndex> materials = body.materials();
-                       return std::any_of(materials.begin(), materials.end(), [&](auto material) {
-                         return model.materials[material].mass_damping > 0;
-                       });
-                     });
+         std::ranges::any_of(model.deformables, [&](const DeformableBody& body) {
+           const std::vector<MaterialIndex> materials = body.materials();
+           return std::ranges::any_of(materials, [&](auto material) {
+             return model.materials[material].mass_damping > 0;
+           });
+         });
 }
 
 MassDamping::MassDamping(const Model& model, const DegreesOfFreedom& dofs, int threads)

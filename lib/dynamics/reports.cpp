@@ -84,8 +84,8 @@ std::vector<PairDepth> Simulation::overlaps() const {
   for (PairDepth& pair : pairs) {
     pair.share = pair.depth / std::min(inradius_once(pair.a), inradius_once(pair.b));
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const PairDepth& p, const PairDepth& q) { return p.share > q.share; });
+  std::ranges::stable_sort(
+      pairs, [](const PairDepth& p, const PairDepth& q) { return p.share > q.share; });
   return pairs;
 }
 

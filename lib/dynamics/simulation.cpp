@@ -206,7 +206,7 @@ void Simulation::damp(double h) {
 void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit,
                              bool still) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
-  std::fill(lambda_.begin(), lambda_.end(), 0.);
+  std::ranges::fill(lambda_, 0.);
   for (const auto& term : terms_)
     term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit, false, still});
 }

@@ -227,11 +227,10 @@ void FiniteElements::add_chunk(std::span<const Member> elements) {
   for (const Member& m : elements) {
     for (const int node : corners_of(m)) nodes.push_back(sets_[m.set].first_node + node);
   }
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   const auto local_of = [&](int node) {
-    return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) -
-                                      nodes.begin());
+    return static_cast<std::uint16_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
   };
   for (size_t begin = 0; begin < elements.size();) {
     const int corners = static_cast<int>(corners_of(elements[begin]).size());
@@ -470,7 +469,7 @@ void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double>
   constexpr double kProbe =
       1e-6;  // times the shortest edge: a step in the linear range, far above round-off
   const double step = kProbe * shortest_edge_;
-  std::fill(sums.begin(), sums.end(), 0.);
+  std::ranges::fill(sums, 0.);
   std::vector<Point<double>> moved, plus, minus;
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
                                      int element, const Point<double>* w) {

@@ -44,7 +44,7 @@ class Check {
   void arrays() const {
     if (mesh_.first.empty() || mesh_.first.front() != 0 ||
         mesh_.first.back() != static_cast<int>(mesh_.corners.size()) ||
-        !std::is_sorted(mesh_.first.begin(), mesh_.first.end())) {
+        !std::ranges::is_sorted(mesh_.first)) {
       throw InvalidMesh("the elements do not share out the list of corners", -1, -1);
     }
     if (mesh_.element_count() == 0) throw InvalidMesh("has no elements", -1, -1);
@@ -108,8 +108,8 @@ class Check {
       return;
     }
     std::vector<int> sorted(corners.begin(), corners.end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
+    const auto twice = std::ranges::adjacent_find(sorted);
     if (twice != sorted.end()) refuse(*twice);
   }
 
@@ -153,7 +153,7 @@ class Check {
   void dangling_nodes() const {
     std::vector<bool> used(mesh_.nodes.size(), false);
     for (const int c : mesh_.corners) used[c] = true;
-    const auto unused = std::find(used.begin(), used.end(), false);
+    const auto unused = std::ranges::find(used, false);
     if (unused == used.end()) return;
     throw InvalidMesh::at_node(static_cast<int>(unused - used.begin()), "belongs to no element");
   }
@@ -229,8 +229,8 @@ class Check {
                             " parts that share no edge; give each its own body",
                         -1, -1);
     }
-    const auto outer = std::count_if(outline.loops.begin(), outline.loops.end(),
-                                     [](const BoundaryLoop& loop) { return !loop.is_hole; });
+    const auto outer = std::ranges::count_if(
+        outline.loops, [](const BoundaryLoop& loop) { return !loop.is_hole; });
     if (outer != 1) throw InvalidMesh("elements cover each other", -1, -1);
   }
 
@@ -253,7 +253,7 @@ class Check {
                           -1, -1);
       }
       for (const int node : {a, b}) {
-        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
+        if (std::ranges::binary_search(part.nodes, node)) continue;
         throw InvalidMesh(
             name + "has an edge at node " + std::to_string(node) + ", but does not name the node",
             -1, node);
@@ -268,7 +268,7 @@ class Check {
         throw InvalidMesh(name + "does not name its elements in ascending order", e, -1);
       }
       for (const int node : mesh_.element(e)) {
-        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
+        if (std::ranges::binary_search(part.nodes, node)) continue;
         throw InvalidMesh(name + "names element " + std::to_string(e) + ", but not its node " +
                               std::to_string(node),
                           e, node);

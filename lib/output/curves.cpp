@@ -98,8 +98,8 @@ std::string style(const Curve& curve) {
 }
 
 bool has_bars(const CurvePanel& panel) {
-  return std::any_of(panel.curves.begin(), panel.curves.end(),
-                     [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
+  return std::ranges::any_of(
+      panel.curves, [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
 }
 
 // Names at the places 1, 2, ... of the x axis, or its numbers. Names that do not fit beside each

@@ -179,11 +179,11 @@ PanelLayout lay_out(const FieldPanel& panel, size_t at_once, const Canvas& ruler
     if (text > layout.wide) layout.label = kTwoLabels;
   }
   // Ranges that would run into those of the next frames are left out; the colours have a scale.
-  const bool fit = std::all_of(
-      layout.ranges.begin(), layout.ranges.end(),
-      [&](const std::string& range) { return ruler.text_width(range, kLabelFont) <= layout.wide; });
+  const bool fit = std::ranges::all_of(layout.ranges, [&](const std::string& range) {
+    return ruler.text_width(range, kLabelFont) <= layout.wide;
+  });
   if (!fit) {
-    std::fill(layout.ranges.begin(), layout.ranges.end(), "");
+    std::ranges::fill(layout.ranges, "");
     layout.label = kLabel;
   }
   choose_colours(panel, all, layout);

@@ -49,7 +49,7 @@ class Raster {
         if (a.y() > b.y()) std::swap(a, b);
         crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
       }
-      std::sort(crossings.begin(), crossings.end());
+      std::ranges::sort(crossings);
       for (size_t i = 0; i + 1 < crossings.size(); i += 2) {
         const int end = first_right_of(crossings[i + 1]);
         for (int column = first_right_of(crossings[i]); column < end; ++column) f(column, row);

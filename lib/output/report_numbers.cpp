@@ -35,8 +35,8 @@ constexpr std::array kGroups{GroupText{"Against the paper", "paper"},
                              GroupText{"Internal checks", "internal checks"}};
 
 const BasisText& text_of(const ReportNumber& number) {
-  return *std::find_if(kBasisTexts.begin(), kBasisTexts.end(),
-                       [&](const BasisText& t) { return t.basis == number.basis; });
+  return *std::ranges::find_if(kBasisTexts,
+                               [&](const BasisText& t) { return t.basis == number.basis; });
 }
 
 std::string two_digits(double x) { return x == 0 ? "0" : fmt::format("{:.1e}", x); }
@@ -101,9 +101,8 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
   std::string text;
   for (size_t group = 0; group < kGroups.size(); ++group) {
     const auto is_here = [&](const ReportNumber& n) { return text_of(n).group == group; };
-    const bool with_scenes =
-        std::any_of(numbers.begin(), numbers.end(),
-                    [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
+    const bool with_scenes = std::ranges::any_of(
+        numbers, [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
     std::string rows;
     for (const ReportNumber& n : numbers) {
       if (is_here(n)) rows += row(n, with_scenes);

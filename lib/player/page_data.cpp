@@ -113,7 +113,7 @@ class Builder {
     for (const Shapes::Body& body : run_.shapes.bodies) {
       if (body.known) sizes.push_back(diameter(body));
     }
-    std::sort(sizes.begin(), sizes.end());
+    std::ranges::sort(sizes);
     const Vec2 half = (window_.high - window_.low) / 2, middle = window_.middle();
     description["times"] = run_.times;
     description["bodies"] = run_.bodies;
@@ -261,7 +261,7 @@ class Builder {
     block.add("chain_y", y);
     block.add("chain_force", force);
     std::vector<double> sorted = chains.force;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     const double scale = sorted.empty() ? 0 : sorted[sorted.size() - 1 - sorted.size() / 40];
     description["force_scale"] = scale > 0 ? scale : 1;
     description["force_most"] = largest;

@@ -27,7 +27,7 @@ void require_fitting(const Simulation& simulation, const RunProgress& progress) 
   const auto fits = [&](const LoadStep& s) {
     return s.off.size() == bodies && s.worst >= 0 && static_cast<size_t>(s.worst) < bodies;
   };
-  if (!std::all_of(progress.load_steps.begin(), progress.load_steps.end(), fits)) {
+  if (!std::ranges::all_of(progress.load_steps, fits)) {
     throw ArchiveMismatch("load_steps");
   }
   if (!(simulation.step_size() > 0)) throw ArchiveMismatch("step_size");
@@ -185,7 +185,7 @@ std::string bad_line(const std::string& file, std::int64_t size) {
     const auto odd = [&](unsigned char c) {
       return std::iscntrl(c) != 0 || (number > 1 && std::isalpha(c) != 0 && c != 'e');
     };
-    if (line.empty() || std::any_of(line.begin(), line.end(), odd)) {
+    if (line.empty() || std::ranges::any_of(line, odd)) {
       return fmt::format(", first seen in line {}", number);
     }
   }

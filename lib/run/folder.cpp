@@ -76,7 +76,7 @@ std::set<std::string> own_files(const std::string& folder, const FileList& list,
                                   : std::set(list.names().begin(), list.names().end());
   std::set<std::string> own;
   for (const std::string& name : all) {
-    const bool result = std::find(results.begin(), results.end(), name) != results.end();
+    const bool result = std::ranges::find(results, name) != results.end();
     if (result || name == "picture.png" || is_frame_file(name)) own.insert(name);
   }
   return own;
@@ -109,7 +109,7 @@ void refuse_others(const std::string& folder, const Names& results,
     const std::string name = "frames/" + entry.path().filename().string();
     if (is_frame_file(name) && own.count(name) == 0) frames.push_back(name);
   }
-  if (!frames.empty()) refuse(*std::min_element(frames.begin(), frames.end()));
+  if (!frames.empty()) refuse(*std::ranges::min_element(frames));
 }
 
 void refuse_inputs(const std::string& folder, const Names& files, const Names& inputs) {

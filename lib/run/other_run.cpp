@@ -66,7 +66,7 @@ void OtherRun::load(const std::string& file) {
   of_simulation("state", state_);
   // The time of a static run is that of its load histories: the velocities of what it drives are
   // none that bodies have.
-  if (simulation.contains("equilibrium")) std::fill(state_.v.begin(), state_.v.end(), 0.);
+  if (simulation.contains("equilibrium")) std::ranges::fill(state_.v, 0.);
   memory_ = memory_in(simulation);
 }
 
@@ -82,7 +82,7 @@ Beginning OtherRun::move_into(Scene& scene) {
         fmt::format("has no body of the same name and shape as one of {}", scene.file));
   }
   if (scene.time.statics) {  // nothing moves there
-    for (BodyStart& start : found.starts) std::fill(start.v.begin(), start.v.end(), 0.);
+    for (BodyStart& start : found.starts) std::ranges::fill(start.v, 0.);
   }
   begin_at(scene.model, found.starts);
   heirs_ = std::move(found.heirs);

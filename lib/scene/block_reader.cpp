@@ -25,8 +25,8 @@ void BlockReader::read(JsonObject& fill) {
   const JsonValue* size = fill.optional("diameter");
   if (size) {
     diameter_ = diameter(*size);
-  } else if (!std::all_of(shapes_.begin(), shapes_.end(),
-                          [](const Shape& s) { return s.own_diameter.has_value(); })) {
+  } else if (!std::ranges::all_of(shapes_,
+                                  [](const Shape& s) { return s.own_diameter.has_value(); })) {
     fill.required("diameter",
                   "of the disc of equal area, in m; only given polygons have a "
                   "size of their own");

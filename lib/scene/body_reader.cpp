@@ -272,7 +272,7 @@ void BodyReader::element_materials(const JsonValue& value, DeformableBody& body)
   std::vector<int> taken(body.element_material.size(), -1);  // by which of the groups
   for (size_t i = 0; i < groups.size(); ++i) {
     const JsonValue& name = value.items()[i];
-    if (std::find(known.begin(), known.end(), groups[i]) == known.end()) {
+    if (std::ranges::find(known, groups[i]) == known.end()) {
       in_.fail(name, known.empty()
                          ? "the mesh has no groups of elements: those are the physical "
                            "surfaces of a file of gmsh"
@@ -280,8 +280,8 @@ void BodyReader::element_materials(const JsonValue& value, DeformableBody& body)
     }
     const MaterialIndex chosen = material(name);
     require_elastic(name, chosen);
-    const auto group = std::find_if(body.mesh.groups.begin(), body.mesh.groups.end(),
-                                    [&](const MeshGroup& g) { return g.name == groups[i]; });
+    const auto group = std::ranges::find_if(
+        body.mesh.groups, [&](const MeshGroup& g) { return g.name == groups[i]; });
     for (const int e : group->elements) {
       MaterialIndex& of_element = body.element_material[e];
       if (taken[e] >= 0 && of_element != chosen) {

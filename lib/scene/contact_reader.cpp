@@ -185,10 +185,9 @@ void ContactReader::surface(const JsonValue* surface, const JsonValue* distribut
     features_.add(feature_of(law.distribution), distribution);
     return;
   }
-  law.distribution =
-      std::find_if(kDistributions.begin(), kDistributions.end(), [&](const NamedDistribution& d) {
-        return d.surface == law.surface;
-      })->distribution;
+  law.distribution = std::ranges::find_if(kDistributions, [&](const NamedDistribution& d) {
+                       return d.surface == law.surface;
+                     })->distribution;
 }
 
 void ContactReader::read_pairs() {

@@ -76,7 +76,7 @@ Place DeformableReader::place(const JsonValue& value) const {
     const std::string& name = in_.string(*v);
     std::vector<std::string> names;
     for (const MeshGroup& g : body_.mesh.groups) names.push_back(g.name);
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    if (std::ranges::find(names, name) == names.end()) {
       in_.fail(*v, names.empty() ? "the mesh has no groups"
                                  : "the mesh has no group " + suggest(name, names));
     }

@@ -389,8 +389,8 @@ Drawing read_drawing(const std::string& file) {
                                             {".wkt", nullptr},
                                             {".txt", nullptr}}};
   const std::string ending = lower_case(std::filesystem::path(file).extension().string());
-  const auto format = std::find_if(kFormats.begin(), kFormats.end(),
-                                   [&](const Format& f) { return ending == f.ending; });
+  const auto format =
+      std::ranges::find_if(kFormats, [&](const Format& f) { return ending == f.ending; });
   if (format == kFormats.end()) {
     throw SceneError(file, 0, "",
                      "is of no known format; drawings are .dxf, .wkt, .geojson or .csv");

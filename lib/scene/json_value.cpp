@@ -110,7 +110,7 @@ const std::vector<std::string>& JsonValue::keys() const {
 }
 
 const JsonValue* JsonValue::find(std::string_view key) const {
-  const auto found = std::find(keys().begin(), keys().end(), key);
+  const auto found = std::ranges::find(keys(), key);
   return found != keys().end() ? &items()[static_cast<size_t>(found - keys().begin())] : nullptr;
 }
 

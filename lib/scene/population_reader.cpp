@@ -78,7 +78,7 @@ StopRule PopulationReader::stop(const JsonValue& value) const {
   if (const JsonValue* v = object.optional("region")) {
     std::vector<std::string> names;
     for (const Region& region : model_.regions) names.push_back(region.name);
-    const auto found = std::find(names.begin(), names.end(), in_.string(*v));
+    const auto found = std::ranges::find(names, in_.string(*v));
     if (found == names.end()) in_.fail(*v, "unknown region " + suggest(v->string(), names));
     rule.region = static_cast<int>(found - names.begin());
   }

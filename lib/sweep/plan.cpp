@@ -259,7 +259,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& paths) {
     const auto shared = [&](const std::string& other) {
       return other != path && tail(other, count) == tail(path, count);
     };
-    while (tail(path, count) != path && std::any_of(paths.begin(), paths.end(), shared)) ++count;
+    while (tail(path, count) != path && std::ranges::any_of(paths, shared)) ++count;
     names.push_back(tail(path, count));
   }
   return names;

@@ -148,9 +148,8 @@ SummaryTable summarise(const Plan& plan, const std::vector<RunRecord>& records,
   for (size_t g = 0; g < groups.size(); ++g) {
     SummaryRow& row = table.rows[g];
     row.runs = groups[g].size();
-    row.done = static_cast<size_t>(
-        std::count_if(groups[g].begin(), groups[g].end(),
-                      [](const RunRecord* run) { return run->state == RunState::done; }));
+    row.done = static_cast<size_t>(std::ranges::count_if(
+        groups[g], [](const RunRecord* run) { return run->state == RunState::done; }));
     for (const SummaryColumn& column : table.columns) {
       row.cells.push_back(column.kind == Kind::mean ? mean_cell(groups[g], column.measure)
                           : column.kind == Kind::proportion

@@ -61,10 +61,9 @@ const std::string* nearest_word(std::string_view word, const std::vector<std::st
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string result = fmt::format("\"{}\"", word);
   // A word that begins another one is that one cut short, however much of it is missing.
-  const auto longer =
-      std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
-        return word.size() >= 3 && candidate.starts_with(word);
-      });
+  const auto longer = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    return word.size() >= 3 && candidate.starts_with(word);
+  });
   if (longer != candidates.end()) {
     result += fmt::format("; did you mean \"{}\"?", *longer);
   } else if (const std::string* best = nearest_word(word, candidates)) {
