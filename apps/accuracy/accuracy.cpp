@@ -198,7 +198,7 @@ class Accuracy {
         furthest_ = std::max(furthest_, off);
       } else {
         fmt::print(stderr, "apothem: {}\n",
-                   SceneError(c.pairs[i].name, 0, "",
+                   SceneError(c.pairs[i].name,
                               fmt::format("the expected values of the file are off by {:.2g}", off))
                        .what());
       }

@@ -136,7 +136,7 @@ std::vector<std::vector<std::string>> FigureReader::columns_of_table(const JsonV
 std::vector<std::string> figure_names(const std::string& data) {
   std::vector<std::string> names = names_in(data + "/figures");
   if (names.empty()) {
-    throw SceneError(data, 0, "", "holds no figures; name the folder that does with --data");
+    throw SceneError(data, "holds no figures; name the folder that does with --data");
   }
   const auto key = [](const std::string& name) {
     constexpr const char* kDigits = "0123456789";

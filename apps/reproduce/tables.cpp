@@ -27,7 +27,7 @@ bool fits(const std::string& cell, const std::string& content) {
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file), rows_(read_csv(file)) {
-    if (rows_.empty()) throw SceneError(file, 0, "", "is empty");
+    if (rows_.empty()) throw SceneError(file, "is empty");
   }
 
   [[nodiscard]] size_t column(const std::string& name) const {
@@ -120,7 +120,7 @@ void require_columns(const TableSource& source, const std::string& file) {
   for (const std::string* name : {&source.x.column, &source.y.column, &source.of}) {
     if (!name->empty()) static_cast<void>(table.column(*name));
   }
-  if (table.chosen(source).empty()) throw SceneError(file, 0, "", "has no row that is asked for");
+  if (table.chosen(source).empty()) throw SceneError(file, "has no row that is asked for");
 }
 
 }  // namespace
@@ -192,7 +192,7 @@ std::vector<TablePoint> points_of(const TableSource& source, const std::string& 
     }
   }
   for (const auto& [at, values] : groups) points.push_back(point_of(source.kind, at, values));
-  if (points.empty()) throw SceneError(file, 0, "", "has no row with the values that are shown");
+  if (points.empty()) throw SceneError(file, "has no row with the values that are shown");
   std::ranges::stable_sort(points,
                            [](const TablePoint& a, const TablePoint& b) { return a.x < b.x; });
   return points;
@@ -250,7 +250,7 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
           static_cast<double>(at_least) / static_cast<double>(common));
   }
   if (common == 0) {
-    throw SceneError(path_of(c.first, data, studies), 0, "",
+    throw SceneError(path_of(c.first, data, studies),
                      "has no x in common with " + path_of(c.second, data, studies));
   }
   return numbers;

@@ -34,21 +34,21 @@ OtherRun::OtherRun(const std::string& folder, std::optional<double> time) {
   std::string file = state_file(folder, StateFile::final);
   if (!file_exists(file)) file = state_file(folder, StateFile::checkpoint);
   if (!file_exists(file)) {
-    throw SceneError(folder, 0, "",
+    throw SceneError(folder,
                      "holds no state of a run, neither final.json nor checkpoint.json; give the "
                      "folder of a run that is done or was stopped");
   }
   try {
     load(file);
   } catch (const nlohmann::json::exception& bad) {
-    throw SceneError(file, 0, "", std::string("is not the state of a run: ") + bad.what());
+    throw SceneError(file, std::string("is not the state of a run: ") + bad.what());
   } catch (const ArchiveMismatch& bad) {
-    throw SceneError(file, 0, "", std::string("is damaged: ") + bad.what());
+    throw SceneError(file, std::string("is damaged: ") + bad.what());
   }
   beginning_.time = state_.time;
   if (time && !(std::abs(*time - state_.time) <= kSameTime * std::abs(state_.time))) {
     throw SceneError(
-        file, 0, "",
+        file,
         fmt::format("is the state at t = {} s; to begin at t = {} s is not supported yet, because "
                     "frames hold no whole state: run the other scene --until that time",
                     state_.time, *time));
@@ -78,7 +78,7 @@ Beginning OtherRun::move_into(Scene& scene) {
   Inheritance found = inheritance(record_, state_, scene.model);
   if (found.starts.empty()) {
     throw SceneError(
-        beginning_.folder, 0, "",
+        beginning_.folder,
         fmt::format("has no body of the same name and shape as one of {}", scene.file));
   }
   if (scene.time.statics) {  // nothing moves there

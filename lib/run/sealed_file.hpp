@@ -14,7 +14,7 @@ namespace apothem {
 class Damaged : public SceneError {
  public:
   Damaged(const std::string& file, const std::string& fault)
-      : SceneError(file, 0, "", fault + "; run it anew"), fault_(file + ": " + fault) {}
+      : SceneError(file, fault + "; run it anew"), fault_(file + ": " + fault) {}
   /// The file and what is wrong, without the remedy.
   [[nodiscard]] const std::string& fault() const { return fault_; }
 
