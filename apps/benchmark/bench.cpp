@@ -1,8 +1,9 @@
 #include "apps/benchmark/bench.hpp"
-#include "lib/system/clock.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {

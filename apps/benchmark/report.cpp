@@ -170,26 +170,15 @@ std::vector<Growth> growths(const std::vector<CaseResult>& cases) {
 }
 
 std::string benchmark_csv(const BenchmarkResults& results) {
-  std::vector<std::string> heading{"case",
-                                   "item",
-                                   "size",
-                                   "threads",
-                                   "repetitions",
-                                   "median [ns]",
-                                   "least [ns]",
-                                   "largest [ns]",
-                                   "rate [1/s]",
-                                   "bytes per item",
-                                   "operations per item",
-                                   "bandwidth [GB/s]",
-                                   "arithmetic [GFlop/s]",
-                                   "of bandwidth limit",
-                                   "of arithmetic limit"};
+  std::string text =
+      "case,item,size,threads,repetitions,median [ns],least [ns],largest [ns],rate [1/s],"
+      "bytes per item,operations per item,bandwidth [GB/s],arithmetic [GFlop/s],"
+      "of bandwidth limit,of arithmetic limit";
   for (const NamedExtra& named : kExtras) {
-    heading.emplace_back(named.unit.empty() ? std::string(named.name)
-                                            : fmt::format("{} [{}]", named.name, named.unit));
+    text += fmt::format(",{}", named.name);
+    if (!named.unit.empty()) text += fmt::format(" [{}]", named.unit);
   }
-  std::string text = csv_row(heading);
+  text += "\n";
   const auto cell = [](const std::optional<double>& x, double scale = 1) {
     return x ? fmt::format("{}", scale * *x) : "";
   };

@@ -105,8 +105,8 @@ TablePoint point_of(Kind kind, double x, const std::vector<double>& values) {
 void axis_of(const JsonReader& in, JsonObject& object, const std::string& key,
              TableSource::Axis& axis) {
   axis.column = in.string(object.required(key, "a column"));
-  if (const JsonValue* v = object.optional(key + "_offset")) axis.offset = in.number(*v, "");
-  if (const JsonValue* v = object.optional(key + "_scale")) axis.scale = in.number(*v, "");
+  object.read(key + "_offset", axis.offset, &JsonReader::number, "");
+  object.read(key + "_scale", axis.scale, &JsonReader::number, "");
   if (const JsonValue* v = object.optional(key + "_absolute")) axis.absolute = v->boolean();
 }
 
@@ -153,9 +153,7 @@ TableSource read_table_source(const JsonReader& in, JsonObject& object, const st
       }
     }
   }
-  if (const JsonValue* v = object.optional("take")) {
-    source.kind = static_cast<Kind>(in.choice(*v, {"value", "share", "counts", "mean"}));
-  }
+  object.choose("take", source.kind, {"value", "share", "counts", "mean"});
   axis_of(in, object, "x", source.x);
   axis_of(in, object, "y", source.y);
   if (source.kind == Kind::counts) {
@@ -203,18 +201,17 @@ TableComparison read_comparison(const JsonReader& in, const JsonValue& value,
   JsonObject object(in, value);
   TableComparison result;
   result.label = in.string(object.required("label", "what is compared"));
-  result.kind = static_cast<TableComparison::Kind>(
-      in.choice(object.required("state", "what is stated"), {"difference", "ratio", "order"}));
+  result.kind = in.choice<TableComparison::Kind>(object.required("state", "what is stated"),
+                                                 {"difference", "ratio", "order"});
   for (auto& [key, source] : {std::pair("first", &result.first), {"second", &result.second}}) {
     JsonObject side(in, object.required(key, "a table"));
     *source = read_table_source(in, side, data);
     side.finish();
   }
-  if (const JsonValue* v = object.optional("at")) result.name_of_x = in.string(*v);
+  object.read("at", result.name_of_x, &JsonReader::string);
   result.value = in.number(object.required("value", "the number to expect"), "");
   result.tolerance = in.positive(object.required("tolerance", "allowed difference"), "");
-  result.basis = static_cast<Basis>(in.choice(object.required("basis", "what the value rests on"),
-                                              {kBases.begin(), kBases.end()}));
+  result.basis = in.choice<Basis>(object.required("basis", "what the value rests on"), kBases);
   result.source = in.string(object.required("source", "where the value comes from"));
   object.finish();
   return result;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "geometry/polygon/point.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "lib/mesh/boundary.hpp"
 
 namespace apothem {
 

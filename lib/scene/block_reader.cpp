@@ -61,7 +61,7 @@ BlockReader::Bounds BlockReader::range(const JsonValue& value, double least, dou
 BlockReader::Shape BlockReader::shape(const JsonValue& value) const {
   JsonObject object(in_, value);
   Shape shape;
-  if (const JsonValue* v = object.optional("weight")) shape.weight = in_.positive(*v, "");
+  object.read("weight", shape.weight, &JsonReader::positive, "");
   int kinds = 0;
   if (const JsonValue* v = object.optional("polygon")) {
     const Polygon polygon = read_polygon(in_, *v);

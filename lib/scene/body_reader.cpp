@@ -155,7 +155,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon,
   if (const JsonValue* v = object.optional("position")) {
     body.position = in_.vec2(*v, "m") - model_.origin;
   }
-  if (const JsonValue* v = object.optional("angle")) body.angle = in_.number(*v, "rad");
+  object.read("angle", body.angle, &JsonReader::number, "rad");
   if (const JsonValue* v = object.optional("motion")) {
     body.motion = motion(*v);
     if (body.motion == Motion::prescribed) prescribed_motion(*v, body);
@@ -242,9 +242,7 @@ MaterialIndex BodyReader::material(const JsonValue& name) const {
   const std::string& wanted = in_.string(name);
   const auto found = std::ranges::find(model_.materials, wanted, &Material::name);
   if (found == model_.materials.end()) {
-    std::vector<std::string> known;
-    for (const Material& m : model_.materials) known.push_back(m.name);
-    in_.fail(name, fmt::format("unknown material {}", suggest(wanted, known)));
+    in_.fail(name, "unknown material " + suggest(wanted, names_of(model_.materials)));
   }
   return static_cast<MaterialIndex>(found - model_.materials.begin());
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 namespace {
 
@@ -14,10 +16,7 @@ constexpr double kBulkDamping = .1;
 // The entry of a table of names that a scene chooses.
 template <class Table>
 const auto& chosen(const JsonReader& in, const JsonValue& value, const Table& table) {
-  std::vector<std::string> names;
-  names.reserve(table.size());
-  for (const auto& entry : table) names.emplace_back(entry.name);
-  return table[in.choice(value, names)];
+  return table[in.choice(value, names_of(table))];
 }
 
 Feature feature_of(ForceDistribution distribution) {
@@ -46,9 +45,7 @@ void ContactReader::read(const JsonValue& value) {
     law.friction = friction(*v, true);
   }
   if (const JsonValue* v = object.optional("damping")) damping(*v);
-  if (const JsonValue* v = object.optional("penetration_warning")) {
-    law.penetration_warning = in_.positive(*v, "");
-  }
+  object.read("penetration_warning", law.penetration_warning, &JsonReader::positive, "");
   pairs_ = object.optional("pairs");
   const JsonValue* surface_value = object.optional("surface");
   surface(surface_value, object.optional("distribution"));
@@ -209,9 +206,7 @@ void ContactReader::read_pairs() {
       rule.damping = dashpots(dashpot, model == 0);
       dashpot.finish();
     }
-    if (const JsonValue* v = object.optional("normal_stiffness")) {
-      rule.normal_stiffness = in_.positive(*v, "Pa");
-    }
+    object.read("normal_stiffness", rule.normal_stiffness, &JsonReader::positive, "Pa");
     if (!rule.friction && !rule.damping && !rule.normal_stiffness) {
       in_.fail(value, "must give \"friction\", \"damping\" or \"normal_stiffness\"");
     }

@@ -74,8 +74,7 @@ Place DeformableReader::place(const JsonValue& value) const {
   }
   if (const JsonValue* v = object.optional("group")) {
     const std::string& name = in_.string(*v);
-    std::vector<std::string> names;
-    for (const MeshGroup& g : body_.mesh.groups) names.push_back(g.name);
+    const std::vector<std::string> names = names_of(body_.mesh.groups);
     if (std::ranges::find(names, name) == names.end()) {
       in_.fail(*v, names.empty() ? "the mesh has no groups"
                                  : "the mesh has no group " + suggest(name, names));

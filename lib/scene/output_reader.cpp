@@ -197,9 +197,7 @@ void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
   }
   result.unit = found->unit;
   result.jumps = found->jumps;
-  if (const JsonValue* v = object.optional("take")) {
-    result.take = static_cast<Reduction::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
-  }
+  object.choose("take", result.take, kTakes);
   if (result.take == Reduction::Take::slope) result.unit += " per s";
   if (const JsonValue* v = object.optional("between")) {
     const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
@@ -224,11 +222,11 @@ Expectation OutputReader::expectation(const JsonValue& item,
     in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
   }
   if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
-  if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
+  object.read("label", e.label, &JsonReader::string);
   if (const JsonValue* v = object.optional("basis")) {
-    e.basis = static_cast<Basis>(in_.choice(*v, {kBases.begin(), kBases.end()}));
+    e.basis = in_.choice<Basis>(*v, kBases);
   }
-  if (const JsonValue* v = object.optional("source")) e.source = in_.string(*v);
+  object.read("source", e.source, &JsonReader::string);
   object.finish();
   return e;
 }

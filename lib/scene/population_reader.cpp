@@ -27,8 +27,7 @@ void PopulationReader::world(const JsonValue& value) {
                       "what happens to bodies that leave the box: \"keep\", \"remove\" "
                       "or \"stop\"");
   object.finish();
-  model_.world.outside =
-      static_cast<World::Outside>(in_.choice(outside, {kOutsides.begin(), kOutsides.end()}));
+  model_.world.outside = in_.choice<World::Outside>(outside, kOutsides);
   if (model_.world.outside != World::Outside::keep) features_.add(Feature::outside, &outside);
 }
 
@@ -76,8 +75,7 @@ StopRule PopulationReader::stop(const JsonValue& value) const {
   StopRule rule;
   rule.name = in_.string(object.required("name", "a string, for \"stopped_by\""));
   if (const JsonValue* v = object.optional("region")) {
-    std::vector<std::string> names;
-    for (const Region& region : model_.regions) names.push_back(region.name);
+    const std::vector<std::string> names = names_of(model_.regions);
     const auto found = std::ranges::find(names, in_.string(*v));
     if (found == names.end()) in_.fail(*v, "unknown region " + suggest(v->string(), names));
     rule.region = static_cast<int>(found - names.begin());
@@ -105,8 +103,8 @@ StopRule PopulationReader::stop(const JsonValue& value) const {
     if (conditions > 0) in_.fail(*v, "stands alone; make two entries");
     ++conditions;
   }
-  if (const JsonValue* v = object.optional("for")) rule.hold = in_.not_negative(*v, "s");
-  if (const JsonValue* v = object.optional("after")) rule.after = in_.not_negative(*v, "s");
+  object.read("for", rule.hold, &JsonReader::not_negative, "s");
+  object.read("after", rule.after, &JsonReader::not_negative, "s");
   object.finish();
   if (conditions == 0) {
     in_.fail(value,

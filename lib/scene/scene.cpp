@@ -15,6 +15,7 @@
 #include "lib/scene/time_reader.hpp"
 #include "lib/scene/value_maker.hpp"
 #include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -87,7 +88,7 @@ class SceneReader {
     if (const JsonValue* v = top.optional("name")) model_.name = scene_name(*v);
     if (const JsonValue* v = top.optional("description")) in_.string(*v);
     if (const JsonValue* v = top.optional("gravity")) gravity(*v);
-    if (const JsonValue* v = top.optional("thickness")) model_.thickness = in_.positive(*v, "m");
+    top.read("thickness", model_.thickness, &JsonReader::positive, "m");
   }
 
   void gravity(const JsonValue& value) {
@@ -159,8 +160,7 @@ class SceneReader {
 
   // What can end a run before its time.
   [[nodiscard]] std::vector<std::string> stop_names() const {
-    std::vector<std::string> names;
-    for (const StopRule& rule : scene_.stops) names.push_back(rule.name);
+    std::vector<std::string> names = names_of(scene_.stops);
     if (model_.world.outside == World::Outside::stop) names.emplace_back(kStoppedOutside);
     return names;
   }
