@@ -80,6 +80,18 @@ MachineLimits machine_limits(const Timing& timing) {
   return limits;
 }
 
+void add_family(std::vector<BenchmarkCase>& cases, const BenchmarkCase& all,
+                std::initializer_list<int> sizes,
+                const std::function<Work(int size, int threads)>& make, int usual) {
+  for (const int size : sizes) {
+    BenchmarkCase& one = cases.emplace_back(all);
+    one.name += "/" + std::to_string(size);
+    one.prepare = [make, size](int threads) { return make(size, threads); };
+    one.size = size;
+    one.on_request = size > usual;
+  }
+}
+
 std::vector<BenchmarkCase> benchmark_cases() {
   std::vector<BenchmarkCase> all;
   for (const auto cases : {machine_cases, pair_cases, contact_cases, element_cases, scene_cases,

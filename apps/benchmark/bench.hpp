@@ -71,6 +71,12 @@ struct BenchmarkCase {
   ClockKind clock = ClockKind::processor;
 };
 
+/// A case for each size, all of one family. make(size, threads) prepares it; sizes above `usual`
+/// are timed on request only.
+void add_family(std::vector<BenchmarkCase>& cases, const BenchmarkCase& all,
+                std::initializer_list<int> sizes,
+                const std::function<Work(int size, int threads)>& make, int usual = 1 << 30);
+
 /// All cases, in the order in which they are listed.
 std::vector<BenchmarkCase> benchmark_cases();
 

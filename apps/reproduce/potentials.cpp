@@ -137,10 +137,7 @@ class PanelReader {
       if (!piece_of(shape.shown.map, n.edge))
         in_.fail(edge, "no part of the polygon has this edge");
     }
-    n.value = in_.number(object.required("value", "the number to expect"), "");
-    n.tolerance = in_.positive(object.required("tolerance", "allowed difference"), "");
-    n.basis = in_.choice<Basis>(object.required("basis", "what the value rests on"), kBases);
-    n.source = in_.string(object.required("source", "where the value comes from"));
+    n.expected = read_expected(in_, object);
     object.finish();
   }
 
@@ -177,11 +174,10 @@ std::vector<ReportNumber> potential_numbers(const std::vector<PotentialPanelSour
     for (const PotentialShape& shape : panel.shapes) {
       for (const PotentialNumber& n : shape.numbers) {
         const NamedQuantity& quantity = kQuantities[static_cast<size_t>(n.quantity)];
-        const double value = value_of(n, shape.shown.map);
         const std::string what =
             n.label.empty() ? quantity.words : fmt::format("{} {}", quantity.words, n.label);
-        numbers.push_back({shape.shown.label, what, quantity.unit, n.value, value, n.tolerance,
-                           std::abs(value - n.value) <= n.tolerance, n.basis, n.source});
+        numbers.push_back(n.expected.beside(shape.shown.label, what, quantity.unit,
+                                            value_of(n, shape.shown.map)));
       }
     }
   }

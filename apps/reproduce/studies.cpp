@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 namespace {
 
@@ -18,13 +20,6 @@ FigureStudy::Commands read_commands(const JsonReader& in, const JsonValue& value
   }
   if (commands.empty()) in.fail(value, "must hold at least one command");
   return commands;
-}
-
-std::string replaced(std::string text, const std::string& mark, const std::string& by) {
-  for (size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += by.size()) {
-    text.replace(at, mark.size(), by);
-  }
-  return text;
 }
 
 }  // namespace

@@ -209,10 +209,7 @@ TableComparison read_comparison(const JsonReader& in, const JsonValue& value,
     side.finish();
   }
   object.read("at", result.name_of_x, &JsonReader::string);
-  result.value = in.number(object.required("value", "the number to expect"), "");
-  result.tolerance = in.positive(object.required("tolerance", "allowed difference"), "");
-  result.basis = in.choice<Basis>(object.required("basis", "what the value rests on"), kBases);
-  result.source = in.string(object.required("source", "where the value comes from"));
+  result.expected = read_expected(in, object);
   object.finish();
   return result;
 }
@@ -223,8 +220,7 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
   const std::vector<TablePoint> second = points_of(c.second, data, studies);
   std::vector<ReportNumber> numbers;
   const auto state = [&](const std::string& what, double value) {
-    numbers.push_back({"", what, "1", c.value, value, c.tolerance,
-                       std::abs(value - c.value) <= c.tolerance, c.basis, c.source});
+    numbers.push_back(c.expected.beside("", what, "1", value));
   };
   size_t common = 0, at_least = 0;
   for (const TablePoint& a : first) {

@@ -1,5 +1,7 @@
 #include "apps/reproduce/text.hpp"
 
+#include <cmath>
+
 namespace apothem {
 
 FigureText read_figure_text(const JsonReader& in, JsonObject& figure) {
@@ -20,6 +22,21 @@ FigureText read_figure_text(const JsonReader& in, JsonObject& figure) {
     object.finish();
   }
   return text;
+}
+
+ReportNumber ExpectedNumber::beside(const std::string& scene, const std::string& what,
+                                    const std::string& unit, double found) const {
+  return {scene, what,  unit, value, found, tolerance, std::abs(found - value) <= tolerance,
+          basis, source};
+}
+
+ExpectedNumber read_expected(const JsonReader& in, JsonObject& object) {
+  ExpectedNumber expected;
+  expected.value = in.number(object.required("value", "the number to expect"), "");
+  expected.tolerance = in.positive(object.required("tolerance", "allowed difference"), "");
+  expected.basis = in.choice<Basis>(object.required("basis", "what the value rests on"), kBases);
+  expected.source = in.string(object.required("source", "where the value comes from"));
+  return expected;
 }
 
 }  // namespace apothem

@@ -18,12 +18,9 @@ constexpr double kDampTime = 1.5;  // of a coordinate, ns
 std::vector<double> node_rates(const Model& model, const DeformableBody& body) {
   const Mesh& mesh = body.mesh;
   std::vector<double> rate(mesh.nodes.size(), 0), mass(mesh.nodes.size(), 0);
-  std::vector<Vec2> corners;
   for (ElementIndex e = 0; e < mesh.element_count(); ++e) {
     const Material& m = model.materials[body.material_of(e)];
-    corners.clear();
-    for (const int node : mesh.element(e)) corners.push_back(mesh.nodes[node]);
-    const std::vector<double> areas = corner_areas(corners);
+    const std::vector<double> areas = corner_areas(mesh.places(mesh.element(e)));
     for (size_t i = 0; i < areas.size(); ++i) {
       const int node = mesh.element(e)[i];
       rate[node] += m.mass_damping * m.density * areas[i];

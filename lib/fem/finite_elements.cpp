@@ -138,12 +138,6 @@ double dispatch(const Blocks& blocks) {
   });
 }
 
-std::vector<Vec2> places(const Mesh& mesh, int element) {
-  std::vector<Vec2> x;
-  for (const int node : mesh.element(element)) x.push_back(mesh.nodes[node]);
-  return x;
-}
-
 }  // namespace
 
 FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
@@ -172,7 +166,7 @@ void FiniteElements::add_masses(int index, const ElementSet& set) {
   for (int e = 0; e < mesh.element_count(); ++e) {
     const ElementMaterial& of_element = material(index, e);
     damped_ = damped_ || of_element.stiffness_damping > 0;
-    const std::vector<Vec2> x = places(mesh, e);
+    const std::vector<Vec2> x = mesh.places(mesh.element(e));
     const std::vector<double> areas = corner_areas(x);
     for (size_t i = 0; i < areas.size(); ++i) {
       shortest_edge_ = std::min(shortest_edge_, (x[i] - before(x, i)).norm());
@@ -258,8 +252,8 @@ void FiniteElements::add_chunk(std::span<const Member> elements) {
       const size_t block = k / kLanes, lane = k % kLanes;
       const Member& m = elements[std::min(begin + k, end - 1)];
       with_element(behaviour.kind, [&]<class Element>(Element) {
-        Element::prepare(places(*sets_[m.set].mesh, m.element), behaviour.material.elastic,
-                         behaviour.thickness,
+        Element::prepare(sets_[m.set].mesh->places(sets_[m.set].mesh->element(m.element)),
+                         behaviour.material.elastic, behaviour.thickness,
                          &data_[runs_.back().data + block * stored * kLanes + lane]);
       });
       if (begin + k >= end) continue;

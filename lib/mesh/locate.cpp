@@ -112,11 +112,8 @@ std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p) {
   int nearest = -1;
   double least = HUGE_VAL;
   for (int e = 0; e < mesh.element_count() && least > 0; ++e) {
-    Box box;
-    for (const int c : mesh.element(e)) box.include(mesh.nodes[c]);
-    if (apart(box.grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
-    std::vector<Vec2> ring;
-    for (const int c : mesh.element(e)) ring.push_back(mesh.nodes[c]);
+    const std::vector<Vec2> ring = mesh.places(mesh.element(e));
+    if (apart(box_of(ring).grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
     const double distance =
         strictly_inside(ring, p) ? 0 : distance_to_ring(ring_about(mesh, e, p), Vec2::Zero());
     if (distance >= least || distance > reach) continue;

@@ -30,9 +30,7 @@ struct Spread {
 };
 
 bool is_visible(const Field& field, int element, const Box& window) {
-  Box box;
-  for (const int node : field.mesh.element(element)) box.include(field.mesh.nodes[node]);
-  return !apart(box, window);
+  return !apart(box_of(field.mesh.places(field.mesh.element(element))), window);
 }
 
 // The range of the values of a field that are visible inside a window.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "lib/output/html.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -42,13 +42,8 @@ const BasisText& text_of(const ReportNumber& number) {
 std::string two_digits(double x) { return x == 0 ? "0" : fmt::format("{:.1e}", x); }
 
 // m^2 as it is printed.
-std::string unit_in_print(std::string unit) {
-  for (const auto& [plain, printed] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
-    for (size_t at = unit.find(plain); at != std::string::npos; at = unit.find(plain)) {
-      unit.replace(at, 2, printed);
-    }
-  }
-  return unit;
+std::string unit_in_print(const std::string& unit) {
+  return replaced(replaced(unit, "^2", "²"), "^3", "³");
 }
 
 std::string row(const ReportNumber& n, bool with_scene) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -66,15 +67,8 @@ void with_state(const std::string& name, const Load& load) {
 }  // namespace
 
 std::string state_file(const std::string& folder, StateFile kind) {
-  switch (kind) {
-    case StateFile::checkpoint:
-      return folder + "/checkpoint.json";
-    case StateFile::previous:
-      return folder + "/checkpoint.previous.json";
-    case StateFile::final:
-      break;
-  }
-  return folder + "/final.json";
+  constexpr std::array kNames{"checkpoint.json", "checkpoint.previous.json", "final.json"};
+  return folder + "/" + kNames[static_cast<size_t>(kind)];
 }
 
 bool has_checkpoint(const std::string& folder) {

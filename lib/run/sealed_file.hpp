@@ -26,9 +26,6 @@ class Damaged : public SceneError {
 /// checksum. Throws SystemFailure; an older file is then intact.
 void write_sealed(const std::string& file, const std::function<void(Archive&)>& write);
 
-/// The text of an object with its checksum.
-std::string sealed(std::string object);
-
 /// The text of a sealed file. Throws Damaged, also if it has no checksum, and SceneError if it
 /// cannot be read.
 std::string read_sealed(const std::string& file);

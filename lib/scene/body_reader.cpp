@@ -89,9 +89,7 @@ std::vector<std::vector<Vec2>> BodyReader::outlines() const {
     const Mesh& mesh = std::get<MeshSpec>(shapes_[i]).mesh;
     for (const BoundaryLoop& loop : boundary(mesh).loops) {
       if (loop.is_hole) continue;
-      std::vector<Vec2> ring;
-      for (const int node : loop.nodes) ring.push_back(mesh.nodes[node]);
-      rings.push_back(moved(*values_[i], std::move(ring), mesh_centroid(mesh)));
+      rings.push_back(moved(*values_[i], mesh.places(loop.nodes), mesh_centroid(mesh)));
     }
   }
   return rings;
@@ -204,9 +202,8 @@ void BodyReader::deformable_body(const JsonValue& value, MeshSpec spec) {
   reorder_along_curve(body.mesh);
   if (const JsonValue* v = object.optional("materials")) element_materials(*v, body);
   body.first_node = model_.node_count();
-  DeformableReader reader(in_, model_, body);
-  if (const JsonValue* v = object.optional("supports")) reader.supports(*v);
-  if (const JsonValue* v = object.optional("loads")) reader.loads(*v);
+  if (const JsonValue* v = object.optional("supports")) read_supports(in_, *v, model_, body);
+  if (const JsonValue* v = object.optional("loads")) read_loads(in_, *v, model_, body);
   initial_velocity(object, body.velocity, body.spin);
   if (const JsonValue* v = object.optional("motion")) motion(*v);
   object.finish();

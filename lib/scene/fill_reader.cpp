@@ -340,11 +340,10 @@ class Fill {
 
 }  // namespace
 
-std::vector<Filled> FillReader::read(const JsonValue& list) {
+std::vector<Filled> read_fills(const JsonReader& in, const JsonValue& list,
+                               std::vector<std::vector<Vec2>> obstacles) {
   std::vector<Filled> fills;
-  for (const JsonValue& value : in_.array(list)) {
-    fills.push_back(Fill(in_, value).read(obstacles_));
-  }
+  for (const JsonValue& value : in.array(list)) fills.push_back(Fill(in, value).read(obstacles));
   return fills;
 }
 

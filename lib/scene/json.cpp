@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -120,21 +121,9 @@ class Builder {
 };
 
 const char* type_name(JsonValue::Type type) {
-  switch (type) {
-    case JsonValue::Type::null:
-      return "null";
-    case JsonValue::Type::boolean:
-      return "true/false";
-    case JsonValue::Type::number:
-      return "a number";
-    case JsonValue::Type::string:
-      return "a string";
-    case JsonValue::Type::array:
-      return "an array";
-    case JsonValue::Type::object:
-      return "an object";
-  }
-  return "?";
+  constexpr std::array kNames{"null",     "true/false", "a number",
+                              "a string", "an array",   "an object"};
+  return kNames[static_cast<size_t>(type)];
 }
 
 }  // namespace

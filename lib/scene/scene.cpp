@@ -38,16 +38,16 @@ class SceneReader {
     if (!list && !fills) top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
     if (list && in_.array(*list).empty() && !fills) in_.fail(*list, "must hold at least one body");
     top.optional("import");
-    ContactReader contact(in_, model_, features_);
-    if (const JsonValue* v = top.optional("contact")) {
-      contact.read(*v);
+    const JsonValue* contact = top.optional("contact");
+    if (contact) {
+      read_contact(in_, *contact, model_, features_);
     } else if (fills || (list && list->items().size() > 1)) {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
     if (list) bodies.add(list->items());
     std::vector<Filled> filled;
-    if (fills) filled = FillReader(in_, bodies.outlines()).read(*fills);
+    if (fills) filled = read_fills(in_, *fills, bodies.outlines());
     for (Filled& fill : filled) {
       fill.polygons.empty() ? bodies.add(fill.bodies)
                             : bodies.add(fill.alike, std::move(fill.polygons));
@@ -56,7 +56,7 @@ class SceneReader {
     scene_.rigid_pointers = bodies.rigid_pointers();
     scene_.warnings = bodies.warnings();
     add_inflows(bodies, list ? list->items().size() : 0, filled);
-    contact.read_pairs();
+    if (contact) read_contact_rules(in_, *contact, model_, features_);
     population(top);
     scene_.time = read_time(in_, top.required("time", "{\"end\": ...} in s"), features_);
     const JsonValue* output = top.optional("output");
@@ -123,10 +123,11 @@ class SceneReader {
   }
 
   void population(JsonObject& top) {
-    PopulationReader reader(in_, model_, features_);
-    if (const JsonValue* v = top.optional("world")) reader.world(*v);
-    if (const JsonValue* v = top.optional("regions")) reader.regions(*v);
-    if (const JsonValue* v = top.optional("stop")) scene_.stops = reader.stops(*v);
+    if (const JsonValue* v = top.optional("world")) read_world(in_, *v, model_, features_);
+    if (const JsonValue* v = top.optional("regions")) read_regions(in_, *v, model_);
+    if (const JsonValue* v = top.optional("stop")) {
+      scene_.stops = read_stops(in_, *v, model_, features_);
+    }
   }
 
   const std::string& scene_name(const JsonValue& value) {

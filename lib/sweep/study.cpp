@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -89,25 +90,9 @@ RunState state_of_files(const std::string& folder) {
 }  // namespace
 
 const char* name_of(RunState state) {
-  switch (state) {
-    case RunState::missing:
-      return "missing";
-    case RunState::changed:
-      return "changed";
-    case RunState::interrupted:
-      return "interrupted";
-    case RunState::done:
-      return "done";
-    case RunState::unstable:
-      return "unstable";
-    case RunState::failed:
-      return "failed";
-    case RunState::refused:
-      return "refused";
-    case RunState::crashed:
-      return "crashed";
-  }
-  return "";
+  constexpr std::array kNames{"missing",  "changed", "interrupted", "done",
+                              "unstable", "failed",  "refused",     "crashed"};
+  return kNames[static_cast<size_t>(state)];
 }
 
 bool has_failed(RunState state) {

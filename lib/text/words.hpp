@@ -15,6 +15,9 @@ std::string upper_case(std::string_view text);
 /// The text without blanks at its ends; `blanks` are the characters that count as such.
 std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r");
 
+/// The text with `by` in place of each `mark`.
+std::string replaced(std::string text, std::string_view mark, std::string_view by);
+
 /// The names of things that have one.
 template <class Things>
 std::vector<std::string> names_of(const Things& things) {
