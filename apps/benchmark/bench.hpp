@@ -63,7 +63,7 @@ struct BenchmarkCase {
   std::string name;   ///< the same in all versions, so that these can be compared
   std::string item;   ///< what a time is of
   std::string about;  ///< in a few words
-  std::function<Work(int threads)> prepare;
+  std::function<Work(int threads)> prepare = {};
   /// Bodies or elements, where it says how time grows with them; the cases of a family have the
   /// same name up to the last slash.
   double size = 0;

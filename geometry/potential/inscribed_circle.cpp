@@ -8,9 +8,8 @@
 //   zero where the points of edge i that are nearest to T lie inside the edge, otherwise it is
 //   quadratic in the size of T.
 // - Lower bound: f_i is nowhere below its tangent plane at any point. A step to the highest point
-// of
-//   the tangent planes is not taken if it would make f smaller; the steps converge quadratically to
-//   a centre.
+//   of the tangent planes is not taken if it would make f smaller; the steps converge quadratically
+//   to a centre.
 // The result is a value of f at a point inside the polygon, so neither round-off nor a degenerate
 // position can make the radius too large. The upper bound ends the search only when no larger
 // circle can be left. A long corridor, which would be costly with the cells of a grid, consists of
