@@ -47,11 +47,6 @@ std::vector<CauchyStress> Simulation::stresses(const std::vector<TrackedPoint>& 
   return result;
 }
 
-const std::vector<double>& Simulation::node_mass() const {
-  static const std::vector<double> kNone;
-  return elements_ ? elements_->elements().mass() : kNone;
-}
-
 Extremes Simulation::extremes() const {
   Extremes extremes;
   if (contact_) {

@@ -11,6 +11,7 @@
 #include "lib/output/axes.hpp"
 #include "lib/output/canvas.hpp"
 #include "lib/player/data_block.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -299,10 +300,7 @@ class Builder {
 
 // JSON that no browser takes for the end of a script.
 std::string safe(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string result;
-  for (const char c : text) c == '<' ? result += "\\u003c" : result += c;
-  return result;
+  return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }
 
 }  // namespace
