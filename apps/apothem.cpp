@@ -21,7 +21,6 @@
 #include "apps/process/signals.hpp"
 #include "apps/process/work_line.hpp"
 #include "lib/dynamics/unstable.hpp"
-#include "lib/output/files.hpp"
 #include "lib/output/run_folder.hpp"
 #include "lib/system/standard_files.hpp"
 #include "lib/text/error.hpp"
@@ -143,12 +142,10 @@ int main(int argc, char** argv) {
     return fail(exit_code::interrupted, stopped.what());
   } catch (const Interrupted& interrupt) {
     return fail(exit_code::interrupted, interrupt.what());
-  } catch (const SystemFailure& error) {
-    return fail(exit_code::system_failed, error.what());
   } catch (const std::bad_alloc&) {
     return fail(exit_code::system_failed, "out of memory");
   } catch (const std::exception& error) {
-    // Other failures of the system, like a full pipe or a file name that it refuses.
+    // Failures of the system, like a full disk, a full pipe or a file name that it refuses.
     return fail(exit_code::system_failed, error.what());
   }
 }

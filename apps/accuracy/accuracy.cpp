@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "apps/accuracy/cases.hpp"
 #include "apps/accuracy/methods.hpp"
@@ -104,8 +103,7 @@ class Accuracy {
 
   int execute() {
     const std::vector<AccuracyCase> cases = accuracy_cases(options_.cases);
-    if (std::all_of(cases.begin(), cases.end(),
-                    [](const AccuracyCase& c) { return c.pairs.empty(); })) {
+    if (std::ranges::all_of(cases, [](const AccuracyCase& c) { return c.pairs.empty(); })) {
       throw UsageError("accuracy", "no pair is left to evaluate");
     }
     create_folder(options_.folder);
@@ -171,7 +169,7 @@ class Accuracy {
     }
     row.median = row.worst = std::nan("");
     if (!of_weight.empty()) {
-      std::sort(of_weight.begin(), of_weight.end());
+      std::ranges::sort(of_weight);
       row.median = of_weight[of_weight.size() / 2];
       row.worst = of_weight.back();
     }
@@ -200,7 +198,7 @@ class Accuracy {
         furthest_ = std::max(furthest_, off);
       } else {
         fmt::print(stderr, "apothem: {}\n",
-                   SceneError(c.pairs[i].name, 0, "",
+                   SceneError(c.pairs[i].name,
                               fmt::format("the expected values of the file are off by {:.2g}", off))
                        .what());
       }

@@ -47,7 +47,7 @@ class Cases {
  private:
   static void refuse(AccuracyCase& in, const std::string& name, const std::string& why) {
     ++in.refused;
-    fmt::print(stderr, "apothem: {}\n", SceneError(name, 0, "", "refused: " + why).what());
+    fmt::print(stderr, "apothem: {}\n", SceneError(name, "refused: " + why).what());
   }
 };
 

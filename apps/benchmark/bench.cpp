@@ -1,8 +1,9 @@
 #include "apps/benchmark/bench.hpp"
-#include "lib/system/clock.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
@@ -35,14 +36,14 @@ Sample sample(const Work& work, ClockKind clock, std::int64_t calls) {
 }  // namespace
 
 double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
 double Timed::median() const { return median_of(times); }
-double Timed::least() const { return *std::min_element(times.begin(), times.end()); }
-double Timed::largest() const { return *std::max_element(times.begin(), times.end()); }
+double Timed::least() const { return *std::ranges::min_element(times); }
+double Timed::largest() const { return *std::ranges::max_element(times); }
 
 Timed time_case(const BenchmarkCase& benchmark, const Timing& timing) {
   const Work work = benchmark.prepare(timing.threads);
@@ -77,6 +78,18 @@ MachineLimits machine_limits(const Timing& timing) {
     (c.name == kBandwidthCase ? limits.bandwidth : limits.arithmetic) = rate;
   }
   return limits;
+}
+
+void add_family(std::vector<BenchmarkCase>& cases, const BenchmarkCase& all,
+                std::initializer_list<int> sizes,
+                const std::function<Work(int size, int threads)>& make, int usual) {
+  for (const int size : sizes) {
+    BenchmarkCase& one = cases.emplace_back(all);
+    one.name += "/" + std::to_string(size);
+    one.prepare = [make, size](int threads) { return make(size, threads); };
+    one.size = size;
+    one.on_request = size > usual;
+  }
 }
 
 std::vector<BenchmarkCase> benchmark_cases() {

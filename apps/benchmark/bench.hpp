@@ -63,13 +63,19 @@ struct BenchmarkCase {
   std::string name;   ///< the same in all versions, so that these can be compared
   std::string item;   ///< what a time is of
   std::string about;  ///< in a few words
-  std::function<Work(int threads)> prepare;
+  std::function<Work(int threads)> prepare = {};
   /// Bodies or elements, where it says how time grows with them; the cases of a family have the
   /// same name up to the last slash.
   double size = 0;
   bool on_request = false;  ///< takes long: only where it is asked for by a filter
   ClockKind clock = ClockKind::processor;
 };
+
+/// A case for each size, all of one family. make(size, threads) prepares it; sizes above `usual`
+/// are timed on request only.
+void add_family(std::vector<BenchmarkCase>& cases, const BenchmarkCase& all,
+                std::initializer_list<int> sizes,
+                const std::function<Work(int size, int threads)>& make, int usual = 1 << 30);
 
 /// All cases, in the order in which they are listed.
 std::vector<BenchmarkCase> benchmark_cases();

@@ -126,7 +126,7 @@ int compare(std::vector<BenchmarkCase> cases, const BenchmarkOptions& options) {
   const std::vector<std::string> known = cases_of(options.compare);
   std::vector<std::string> missing;
   std::erase_if(cases, [&](const BenchmarkCase& c) {
-    if (std::find(known.begin(), known.end(), c.name) != known.end()) return false;
+    if (std::ranges::find(known, c.name) != known.end()) return false;
     missing.push_back(c.name);
     return true;
   });

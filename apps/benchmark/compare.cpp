@@ -59,7 +59,7 @@ double ComparedCase::ratio() const { return median_of(here) / median_of(other); 
 std::vector<double> ComparedCase::ratios() const {
   std::vector<double> all;
   for (size_t i = 0; i < here.size(); ++i) all.push_back(here[i] / other[i]);
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   return all;
 }
 

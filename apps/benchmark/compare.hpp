@@ -1,7 +1,6 @@
 // Private header: two builds of the program, timed alternately.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

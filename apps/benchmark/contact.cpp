@@ -147,13 +147,8 @@ std::vector<BenchmarkCase> contact_cases() {
                                     .prepare = [](int) { return edge_and_face(); }}};
   const auto enter = [&](const std::string& name, const std::string& about,
                          const std::function<Work(int)>& make) {
-    for (const int cells : {100, 10000}) {
-      cases.push_back({.name = name + "/" + std::to_string(cells),
-                       .item = "cell",
-                       .about = about,
-                       .prepare = [make, cells](int) { return make(cells); },
-                       .size = static_cast<double>(cells)});
-    }
+    add_family(cases, {.name = name, .item = "cell", .about = about}, {100, 10000},
+               [make](int cells, int) { return make(cells); });
   };
   enter("deformable_interface", "two rows of elements on each other: all that a step needs",
         [](int cells) { return step(cells, law_of()); });

@@ -3,7 +3,6 @@
 // divisions and square roots count 1; comparisons and signs do not count.
 #pragma once
 
-#include <cmath>
 #include <compare>
 
 namespace apothem {

@@ -49,8 +49,7 @@ struct Nodal {
 };
 
 double operations_of(ElementKind kind, const Mesh& mesh) {
-  std::vector<Vec2> x;
-  for (const int node : mesh.element(0)) x.push_back(mesh.nodes[node]);
+  const std::vector<Vec2> x = mesh.places(mesh.element(0));
   const int corners = static_cast<int>(x.size());
   return with_element(kind, [&]<class Element>(Element) {
     std::vector<double> stored(static_cast<size_t>(Element::stored(corners)) * kLanes);
@@ -247,13 +246,7 @@ std::vector<BenchmarkCase> element_cases() {
   const auto enter = [&](const std::string& name, const std::string& about,
                          std::initializer_list<int> counts,
                          const std::function<Work(int count, int threads)>& make) {
-    for (const int count : counts) {
-      cases.push_back({.name = name + "/" + std::to_string(count),
-                       .item = "element",
-                       .about = about,
-                       .prepare = [make, count](int threads) { return make(count, threads); },
-                       .size = static_cast<double>(count)});
-    }
+    add_family(cases, {.name = name, .item = "element", .about = about}, counts, make);
   };
   const auto counts = {1000, 100000, 1000000};
   const std::pair<const char*, ElementKind> kinds[]{{"T3", ElementKind::tri3},

@@ -48,7 +48,7 @@ std::vector<std::vector<const CaseResult*>> families(const std::vector<CaseResul
   std::vector<std::vector<const CaseResult*>> found;
   for (const CaseResult& r : cases) {
     if (!(r.benchmark.size > 0)) continue;
-    const auto same = std::find_if(found.begin(), found.end(), [&](const auto& family) {
+    const auto same = std::ranges::find_if(found, [&](const auto& family) {
       return family_of(family.front()->benchmark) == family_of(r.benchmark);
     });
     if (same == found.end()) {
@@ -112,7 +112,7 @@ CurvePanel roofline_panel(const std::vector<CaseResult>& cases, const MachineLim
     const double operations = r.timed.operations;
     if (!(r.timed.bytes > 0) || !(operations > 0)) continue;
     // The largest of a family: the smaller ones lie beside it, and may fit into the caches.
-    const bool larger_follows = std::any_of(cases.begin(), cases.end(), [&](const CaseResult& o) {
+    const bool larger_follows = std::ranges::any_of(cases, [&](const CaseResult& o) {
       return family_of(o.benchmark) == family_of(r.benchmark) &&
              o.benchmark.size > r.benchmark.size;
     });
@@ -170,26 +170,15 @@ std::vector<Growth> growths(const std::vector<CaseResult>& cases) {
 }
 
 std::string benchmark_csv(const BenchmarkResults& results) {
-  std::vector<std::string> heading{"case",
-                                   "item",
-                                   "size",
-                                   "threads",
-                                   "repetitions",
-                                   "median [ns]",
-                                   "least [ns]",
-                                   "largest [ns]",
-                                   "rate [1/s]",
-                                   "bytes per item",
-                                   "operations per item",
-                                   "bandwidth [GB/s]",
-                                   "arithmetic [GFlop/s]",
-                                   "of bandwidth limit",
-                                   "of arithmetic limit"};
+  std::string text =
+      "case,item,size,threads,repetitions,median [ns],least [ns],largest [ns],rate [1/s],"
+      "bytes per item,operations per item,bandwidth [GB/s],arithmetic [GFlop/s],"
+      "of bandwidth limit,of arithmetic limit";
   for (const NamedExtra& named : kExtras) {
-    heading.emplace_back(named.unit.empty() ? std::string(named.name)
-                                            : fmt::format("{} [{}]", named.name, named.unit));
+    text += fmt::format(",{}", named.name);
+    if (!named.unit.empty()) text += fmt::format(" [{}]", named.unit);
   }
-  std::string text = csv_row(heading);
+  text += "\n";
   const auto cell = [](const std::optional<double>& x, double scale = 1) {
     return x ? fmt::format("{}", scale * *x) : "";
   };
@@ -213,8 +202,8 @@ std::string benchmark_csv(const BenchmarkResults& results) {
                                  cell(use.of_arithmetic)};
     for (const NamedExtra& named : kExtras) {
       const auto& extras = r.timed.extras;
-      const auto found = std::find_if(extras.begin(), extras.end(),
-                                      [&](const Extra& e) { return e.name == named.name; });
+      const auto found =
+          std::ranges::find_if(extras, [&](const Extra& e) { return e.name == named.name; });
       row.push_back(found == extras.end() ? "" : cell(found->value));
     }
     text += csv_row(row);

@@ -264,18 +264,17 @@ Work beam(bool by_elements, int threads) {
 
 std::vector<BenchmarkCase> scene_cases() {
   std::vector<BenchmarkCase> cases;
-  for (const int count : {300, 3000, 30000, 99900}) {
-    cases.push_back({.name = "quads/" + std::to_string(count),
-                     .item = "body",
-                     .about = "step of a pile of quadrilaterals at rest, friction 0.5",
-                     .prepare =
-                         [count](int threads) {
-                           pile_of_quadrilaterals();  // its memory does not count
-                           return stepped([count] { return quadrilaterals(count); }, threads);
-                         },
-                     .size = static_cast<double>(count),
-                     .on_request = count > 30000});
-  }
+  add_family(
+      cases,
+      {.name = "quads",
+       .item = "body",
+       .about = "step of a pile of quadrilaterals at rest, friction 0.5"},
+      {300, 3000, 30000, 99900},
+      [](int count, int threads) {
+        pile_of_quadrilaterals();  // its memory does not count
+        return stepped([count] { return quadrilaterals(count); }, threads);
+      },
+      30000);
   cases.push_back({.name = "quads_sizes/6000",
                    .item = "body",
                    .about = "the same, with bodies 10 and 100 times as large on top",
@@ -288,31 +287,26 @@ std::vector<BenchmarkCase> scene_cases() {
                    .about = "two threads, compared with one",
                    .prepare = [](int) { return two_threads([] { return quadrilaterals(3000); }); },
                    .clock = ClockKind::wall});
-  for (const int count : {300, 3000}) {
-    cases.push_back({.name = "crosses/" + std::to_string(count),
-                     .item = "body",
-                     .about = "step of a pile of crosses at rest, friction 0.5",
-                     .prepare =
-                         [count](int threads) {
-                           const Pile& pile = pile_of_crosses();
-                           const int copies = count / static_cast<int>(pile.bodies.size());
-                           return stepped([&] { return troughs(pile, copies, pile.height); },
-                                          threads);
-                         },
-                     .size = static_cast<double>(count)});
-  }
-  for (const int count : {300, 3000, 30000}) {
-    cases.push_back({.name = "blocks/" + std::to_string(count),
-                     .item = "element",
-                     .about = "step of a pile of blocks of 5 x 5 Q4, friction 0.5",
-                     .prepare =
-                         [count](int threads) {
-                           pile_of_meshes();
-                           return stepped([count] { return meshes(count); }, threads, true);
-                         },
-                     .size = static_cast<double>(count),
-                     .on_request = count > 3000});
-  }
+  add_family(cases,
+             {.name = "crosses",
+              .item = "body",
+              .about = "step of a pile of crosses at rest, friction 0.5"},
+             {300, 3000}, [](int count, int threads) {
+               const Pile& pile = pile_of_crosses();
+               const int copies = count / static_cast<int>(pile.bodies.size());
+               return stepped([&] { return troughs(pile, copies, pile.height); }, threads);
+             });
+  add_family(
+      cases,
+      {.name = "blocks",
+       .item = "element",
+       .about = "step of a pile of blocks of 5 x 5 Q4, friction 0.5"},
+      {300, 3000, 30000},
+      [](int count, int threads) {
+        pile_of_meshes();
+        return stepped([count] { return meshes(count); }, threads, true);
+      },
+      3000);
   cases.push_back({.name = "blocks_two_threads/300",
                    .item = "element",
                    .about = "two threads, compared with one",

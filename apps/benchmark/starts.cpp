@@ -1,9 +1,6 @@
 // How long it takes until a scene of many bodies is ready for its first step: reading, making
 // blocks and potentials, finding pairs.
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <memory>
 
 #include "apps/benchmark/bench.hpp"
@@ -13,27 +10,6 @@
 
 namespace apothem {
 namespace {
-
-// A file that lasts as long as this object.
-class TemporaryScene {
- public:
-  explicit TemporaryScene(const std::string& text)
-      : file_((std::filesystem::temp_directory_path() /
-               ("apothem-start-" + std::to_string(getpid()) + ".json"))
-                  .string()) {
-    write_file(file_, text);
-  }
-  ~TemporaryScene() {
-    std::error_code error;
-    std::filesystem::remove(file_, error);
-  }
-  TemporaryScene(const TemporaryScene&) = delete;
-  TemporaryScene& operator=(const TemporaryScene&) = delete;
-  [[nodiscard]] const std::string& file() const { return file_; }
-
- private:
-  std::string file_;
-};
 
 // Blocks of 0.1 m on a lattice in a square of that size.
 std::string lattice(const std::string& shape, int count, int side) {
@@ -49,9 +25,10 @@ std::string lattice(const std::string& shape, int count, int side) {
 }
 
 Work start(const std::string& text, int threads) {
-  const auto scene_file = std::make_shared<TemporaryScene>(text);
-  return {.once = [scene_file, threads] {
-    const Scene scene = read_scene(scene_file->file());
+  const auto folder = std::make_shared<TemporaryFolder>();
+  write_file(folder->path() + "/start.json", text);
+  return {.once = [folder, threads] {
+    const Scene scene = read_scene(folder->path() + "/start.json");
     const Simulation simulation(scene.model, scene.time, scene.output.frames, threads);
     return static_cast<double>(scene.model.bodies.size());
   }};

@@ -51,9 +51,6 @@ Polygon random_quad(Random& random);
 Polygon random_convex(Random& random, int n);
 /// Star-shaped about the origin: n radii from `inner` to 1 at random angles.
 Polygon random_star_shaped(Random& random, int n, double inner);
-/// A closed line through n random points of the unit square, changed until it does not cross
-/// itself.
-Polygon random_simple(Random& random, int n);
 
 /// A hexagon whose edges are divided and bent at their middles again and again, like a coastline,
 /// until there are n vertices.

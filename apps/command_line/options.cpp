@@ -8,6 +8,7 @@
 #include "lib/output/run_plot.hpp"
 #include "lib/output/shape_file.hpp"
 #include "lib/text/decimal.hpp"
+#include "lib/text/words.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -43,6 +44,17 @@ const CLI::Validator kDecimal(
     },
     "");
 
+// An option whose value the help calls `type`.
+template <class T>
+CLI::Option* add(CLI::App* sub, const char* names, T& value, const char* type, const char* about) {
+  return sub->add_option(names, value, about)->type_name(type);
+}
+
+// An option that takes a whole number from 1 to `most`.
+CLI::Option* add_whole(CLI::App* sub, const char* names, int& value, int most, const char* about) {
+  return add(sub, names, value, "N", about)->transform(kWhole)->check(CLI::Range(1, most));
+}
+
 void add_threads(CLI::App* sub, int& threads, const char* about = "Threads of the run") {
   sub->add_option("--threads", threads, about)
       ->transform(kWhole)
@@ -51,17 +63,16 @@ void add_threads(CLI::App* sub, int& threads, const char* about = "Threads of th
 }
 
 void add_settings(CLI::App* sub, std::vector<std::string>& settings) {
-  sub->add_option("--set", settings,
-                  "PATH=VALUE in place of a value of the scene, again and again; like "
-                  "contact.friction.coefficient=0.3 or bodies.block.velocity=[0,-1]")
-      ->type_name("PATH=VALUE")
+  add(sub, "--set", settings, "PATH=VALUE",
+      "PATH=VALUE in place of a value of the scene, again and again; like "
+      "contact.friction.coefficient=0.3 or bodies.block.velocity=[0,-1]")
       ->allow_extra_args(false);
 }
 
 void add_run(CLI::App& app, RunOptions& o) {
   CLI::App* sub = app.add_subcommand("run", "Run a scene");
-  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
-  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)")->type_name("DIR");
+  add(sub, "SCENE", o.scene, "FILE", "Scene file (JSON)")->required();
+  add(sub, "-o,--output", o.folder, "DIR", "Output folder (default: out/NAME)");
   add_threads(sub, o.threads);
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
       ->check(kPositive);
@@ -69,11 +80,9 @@ void add_run(CLI::App& app, RunOptions& o) {
       sub->add_flag("--resume", o.resume,
                     "Continue from the checkpoint in the output folder, or begin if there is "
                     "nothing yet");
-  sub->add_option(
-         "--from", o.from,
-         "Begin with the last state of the run in this folder, at this time in s if given: "
-         "of bodies of the same name and shape")
-      ->type_name("DIR[@TIME]");
+  add(sub, "--from", o.from, "DIR[@TIME]",
+      "Begin with the last state of the run in this folder, at this time in s if given: "
+      "of bodies of the same name and shape");
   add_settings(sub, o.set);
   sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
       ->excludes(resume);
@@ -85,26 +94,17 @@ void add_run(CLI::App& app, RunOptions& o) {
   sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
 }
 
-std::vector<std::string> quantity_names() {
-  std::vector<std::string> names;
-  names.reserve(field_quantities().size());
-  for (const FieldQuantity& quantity : field_quantities()) names.emplace_back(quantity.name);
-  return names;
-}
-
 CLI::Option* add_window(CLI::App* sub, std::vector<double>& window) {
-  return sub
-      ->add_option("--window", window, "Corners of the visible region, m (default: all bodies)")
-      ->type_name("X0,Y0,X1,Y1")
+  return add(sub, "--window", window, "X0,Y0,X1,Y1",
+             "Corners of the visible region, m (default: all bodies)")
       ->delimiter(',')
       ->check(kDecimal)
       ->expected(4);
 }
 
 CLI::Option* add_range(CLI::App* sub, std::vector<double>& range) {
-  return sub
-      ->add_option("--range", range, "Ends of the colour scale, SI units (default: all values)")
-      ->type_name("LOW,HIGH")
+  return add(sub, "--range", range, "LOW,HIGH",
+             "Ends of the colour scale, SI units (default: all values)")
       ->delimiter(',')
       ->check(kDecimal)
       ->expected(2);
@@ -112,35 +112,29 @@ CLI::Option* add_range(CLI::App* sub, std::vector<double>& range) {
 
 void add_picture(CLI::App& app, PictureOptions& o) {
   CLI::App* sub = app.add_subcommand("picture", "Draw the results of a run");
-  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
-  sub->add_option("-o,--output", o.output,
-                  "Picture, .png or .svg (default: picture.png, or PLOT.png, in DIR)")
-      ->type_name("FILE");
+  add(sub, "DIR", o.folder, "DIR", "Folder of the results")->required();
+  add(sub, "-o,--output", o.output, "FILE",
+      "Picture, .png or .svg (default: picture.png, or PLOT.png, in DIR)");
   CLI::Option* time =
       sub->add_option("--time", o.time, "Frame nearest to this time in s (default: the last one)")
           ->check(kDecimal);
   CLI::Option* frames =
-      sub->add_option("--strip", o.strip, "So many frames, from the first to the last one")
-          ->type_name("N")
-          ->transform(kWhole)
-          ->check(CLI::Range(1, 100))
+      add_whole(sub, "--strip", o.strip, 100, "So many frames, from the first to the last one")
           ->excludes(time);
   CLI::Option* colour =
       sub->add_option("--colour", o.colour,
                       "Quantity that colours the bodies (default: von_mises if there are bodies of "
                       "finite elements, otherwise speed, or material with --chains)")
-          ->check(CLI::IsMember(quantity_names()));
+          ->check(CLI::IsMember(names_of(field_quantities())));
   CLI::Option* chains =
       sub->add_flag("--chains", o.chains, "Contact forces as lines, as wide as the force");
   CLI::Option* roses =
       sub->add_flag("--roses", o.roses, "Directions of contacts in each region of the scene");
-  CLI::Option* deformation =
-      sub->add_option("--deformation", o.deformation,
-                      "Factor of all displacements and rotations since the start")
-          ->type_name("FACTOR")
-          ->check(kDecimal)
-          ->excludes(chains)
-          ->excludes(roses);
+  CLI::Option* deformation = add(sub, "--deformation", o.deformation, "FACTOR",
+                                 "Factor of all displacements and rotations since the start")
+                                 ->check(kDecimal)
+                                 ->excludes(chains)
+                                 ->excludes(roses);
   CLI::Option* window = add_window(sub, o.window);
   CLI::Option* range = add_range(sub, o.range);
   CLI::Option* plot =
@@ -151,43 +145,34 @@ void add_picture(CLI::App& app, PictureOptions& o) {
   for (CLI::Option* of_frames : {time, frames, colour, chains, roses, deformation, window, range}) {
     plot->excludes(of_frames);
   }
-  sub->add_option("--columns", o.columns,
-                  "Columns to plot: NAME.quantity, or quantity for all names (default: all that "
-                  "change)")
-      ->type_name("A,B,C")
+  add(sub, "--columns", o.columns, "A,B,C",
+      "Columns to plot: NAME.quantity, or quantity for all names (default: all that "
+      "change)")
       ->delimiter(',')
       ->needs(plot);
 }
 
 void add_sweep(CLI::App& app, SweepOptions& o) {
   CLI::App* sub = app.add_subcommand("sweep", "Run a scene many times with varied values");
-  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
-  sub->add_option("--vary", o.vary,
-                  "Values of a path of the scene, again and again: PATH=A,B,C or "
-                  "PATH=FROM..TO[:STEP], like contact.friction.coefficient=0.1..0.5:0.1. All "
-                  "combinations are run; a path that ends in seed repeats them")
-      ->type_name("PATH=VALUES")
+  add(sub, "SCENE", o.scene, "FILE", "Scene file (JSON)")->required();
+  add(sub, "--vary", o.vary, "PATH=VALUES",
+      "Values of a path of the scene, again and again: PATH=A,B,C or "
+      "PATH=FROM..TO[:STEP], like contact.friction.coefficient=0.1..0.5:0.1. All "
+      "combinations are run; a path that ends in seed repeats them")
       ->allow_extra_args(false);
-  sub->add_option("--table", o.table, "Values that go together: CSV, the first line names paths")
-      ->type_name("FILE");
+  add(sub, "--table", o.table, "FILE", "Values that go together: CSV, the first line names paths");
   add_settings(sub, o.set);
-  sub->add_option("--from", o.from,
-                  "Begin all runs with the state of the run in this folder, "
-                  "or each with the fitting run of the study in it")
-      ->type_name("DIR[@TIME]");
-  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME-sweep)")
-      ->type_name("DIR");
-  sub->add_option("--jobs", o.jobs, "Runs at a time (default: one for each core)")
-      ->type_name("N")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 4096));
-  CLI::Option* shard = sub->add_option("--shard", o.shard, "Part I of N of the runs only, I from 1")
-                           ->type_name("I/N");
+  add(sub, "--from", o.from, "DIR[@TIME]",
+      "Begin all runs with the state of the run in this folder, "
+      "or each with the fitting run of the study in it");
+  add(sub, "-o,--output", o.folder, "DIR", "Output folder (default: out/NAME-sweep)");
+  add_whole(sub, "--jobs", o.jobs, 4096, "Runs at a time (default: one for each core)");
+  CLI::Option* shard =
+      add(sub, "--shard", o.shard, "I/N", "Part I of N of the runs only, I from 1");
   sub->add_flag("--retry-failed", o.retry_failed, "Repeat the runs that have failed");
-  sub->add_option("--survival", o.survival,
-                  "Exponential fit of a number measure, the exposure until an event; EVENT is the "
-                  "yes/no measure that says whether it has happened (default: always)")
-      ->type_name("MEASURE[:EVENT]");
+  add(sub, "--survival", o.survival, "MEASURE[:EVENT]",
+      "Exponential fit of a number measure, the exposure until an event; EVENT is the "
+      "yes/no measure that says whether it has happened (default: always)");
   CLI::Option* collect =
       sub->add_flag("--collect", o.collect, "Make the tables of what there is; run nothing")
           ->excludes(shard);
@@ -196,10 +181,8 @@ void add_sweep(CLI::App& app, SweepOptions& o) {
           ->check(CLI::IsMember({"snakemake"}))
           ->excludes(shard)
           ->excludes(collect);
-  sub->add_option("--shards", o.shards, "Parts of the workflow (default: by the number of runs)")
-      ->type_name("N")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 100000))
+  add_whole(sub, "--shards", o.shards, 100000,
+            "Parts of the workflow (default: by the number of runs)")
       ->needs(workflow);
   sub->add_flag("--dry-run", o.dry_run, "List the runs and what there is of them; run nothing")
       ->excludes(collect)
@@ -209,7 +192,7 @@ void add_sweep(CLI::App& app, SweepOptions& o) {
 
 void add_check(CLI::App& app, CheckOptions& o) {
   CLI::App* sub = app.add_subcommand("check", "Validate a scene and print what a run would do");
-  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  add(sub, "SCENE", o.scene, "FILE", "Scene file (JSON)")->required();
   add_settings(sub, o.set);
   sub->add_flag("--json", o.json, "Print JSON");
 }
@@ -229,9 +212,8 @@ CLI::Option* add_shapes(CLI::App* sub, std::string& what, const std::vector<std:
 void add_contact(CLI::App& app, ContactOptions& o) {
   CLI::App* sub = app.add_subcommand("contact", "Contact force of two polygons");
   CLI::Option* a =
-      sub->add_option("A", o.a, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
-          ->type_name("FILE");
-  CLI::Option* b = sub->add_option("B", o.b, "The other polygon")->type_name("FILE");
+      add(sub, "A", o.a, "FILE", "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}");
+  CLI::Option* b = add(sub, "B", o.b, "FILE", "The other polygon");
   a->needs(b);
   CLI::Option* batch =
       sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
@@ -243,8 +225,8 @@ void add_contact(CLI::App& app, ContactOptions& o) {
       ->capture_default_str();
   sub->add_option("--field", o.field, "Depth in polygons that are not convex (default: roof)")
       ->check(CLI::IsMember({"roof", "distance"}));
-  sub->add_option("--reference", o.reference, "roof (default), inscribed_circle or a length in m")
-      ->type_name("REFERENCE");
+  add(sub, "--reference", o.reference, "REFERENCE",
+      "roof (default), inscribed_circle or a length in m");
   sub->add_option("--method", o.method, "Way to the numbers")
       ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
       ->capture_default_str();
@@ -277,9 +259,8 @@ void add_boolean(CLI::App& app, BooleanOptions& o) {
 void add_mesh(CLI::App& app, MeshOptions& o) {
   CLI::App* sub = app.add_subcommand(
       "mesh", "Mesh a region with polygonal cells, or describe a mesh of gmsh's");
-  sub->add_option("FILE", o.file,
-                  "Region: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}; or a mesh: NAME.msh")
-      ->type_name("FILE")
+  add(sub, "FILE", o.file, "FILE",
+      "Region: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}; or a mesh: NAME.msh")
       ->required();
   CLI::Option* cells =
       sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->transform(kWhole);
@@ -297,24 +278,20 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
       ->needs(cells)
       ->capture_default_str();
   sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
-  sub->add_option("-o,--output", o.output,
-                  "JSON file (default: standard output for Voronoi cells, none for a mesh)")
-      ->type_name("FILE");
-  sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at")->type_name("FILE");
+  add(sub, "-o,--output", o.output, "FILE",
+      "JSON file (default: standard output for Voronoi cells, none for a mesh)");
+  add(sub, "--vtk", o.vtk, "FILE", "VTK file (.vtu) to look at");
   sub->final_callback([&o, cells] { o.make = cells->count() > 0; });
 }
 
 void add_polygon(CLI::App& app, PolygonOptions& o) {
   CLI::App* sub = app.add_subcommand("polygon", "A polygon's roof, singular area and circles");
   CLI::Option* file =
-      sub->add_option("FILE", o.file, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
-          ->type_name("FILE");
+      add(sub, "FILE", o.file, "FILE", "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}");
   CLI::Option* batch =
-      sub->add_option("--batch", o.batch, "File with one ring per line: name n x y ...")
-          ->type_name("FILE")
+      add(sub, "--batch", o.batch, "FILE", "File with one ring per line: name n x y ...")
           ->excludes(file);
-  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
-      ->type_name("REFERENCE")
+  add(sub, "--reference", o.reference, "REFERENCE", "roof, inscribed_circle or a length in m")
       ->capture_default_str();
   sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")
       ->type_name("DIR")
@@ -367,43 +344,29 @@ void add_polygon(CLI::App& app, PolygonOptions& o) {
 
 void add_accuracy(CLI::App& app, AccuracyOptions& o) {
   CLI::App* sub = app.add_subcommand("accuracy", "Speed against error of the contact methods");
-  CLI::Option* cases =
-      sub->add_option("--cases", o.cases,
-                      "Files of pairs (JSON, or lines as of contact --batch) instead of ours")
-          ->type_name("FILE");
-  sub->add_option("-o,--output", o.folder, "Output folder")
-      ->type_name("DIR")
+  CLI::Option* cases = add(sub, "--cases", o.cases, "FILE",
+                           "Files of pairs (JSON, or lines as of contact --batch) instead of ours");
+  add(sub, "-o,--output", o.folder, "DIR", "Output folder")->capture_default_str();
+  add_whole(sub, "--repeat", o.repetitions, 1000, "Measure times so often, and print their range")
       ->capture_default_str();
-  sub->add_option("--repeat", o.repetitions, "Measure times so often, and print their range")
-      ->type_name("N")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  sub->add_option("--write-cases", o.write_cases,
-                  "Write our hard pairs with expected values to this file, and end")
-      ->type_name("FILE")
+  add(sub, "--write-cases", o.write_cases, "FILE",
+      "Write our hard pairs with expected values to this file, and end")
       ->excludes(cases);
 }
 
 void add_benchmark(CLI::App& app, BenchmarkOptions& o) {
   CLI::App* sub = app.add_subcommand("benchmark", "Times of kernels and scenes on this machine");
   CLI::Option* list = sub->add_flag("--list", o.list, "List the cases and time none");
-  sub->add_option("--filter", o.filter,
-                  "Only cases whose names this regular expression finds, long ones too")
-      ->type_name("REGEX");
-  sub->add_option("--repeat", o.repetitions, "Time each case so often; the median counts")
-      ->type_name("N")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 1000))
+  add(sub, "--filter", o.filter, "REGEX",
+      "Only cases whose names this regular expression finds, long ones too");
+  add_whole(sub, "--repeat", o.repetitions, 1000, "Time each case so often; the median counts")
       ->capture_default_str();
   add_threads(sub, o.threads, "Threads of scenes and elements");
   sub->add_flag("--quick", o.quick, "Take a tenth of the time for each repetition");
-  sub->add_option("--compare", o.compare,
-                  "Run this build of the program alternately, and print ratios of times")
-      ->type_name("FILE")
+  add(sub, "--compare", o.compare, "FILE",
+      "Run this build of the program alternately, and print ratios of times")
       ->excludes(list);
-  sub->add_option("-o,--output", o.folder, "Folder for CSV and picture (default: none)")
-      ->type_name("DIR")
+  add(sub, "-o,--output", o.folder, "DIR", "Folder for CSV and picture (default: none)")
       ->excludes(list);
   sub->add_flag("--json", o.json, "Print JSON");
 }
@@ -412,11 +375,8 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
   sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
       ->delimiter(',');
-  sub->add_option("-o,--output", o.folder, "Output folder")
-      ->type_name("DIR")
-      ->capture_default_str();
-  sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)")
-      ->type_name("DIR");
+  add(sub, "-o,--output", o.folder, "DIR", "Output folder")->capture_default_str();
+  add(sub, "--data", o.data, "DIR", "Folder with figures, scenes and reference (default: ours)");
   add_threads(sub, o.threads);
   sub->add_flag("--quick", o.quick, "Make studies with a few runs, in minutes");
   sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
@@ -425,24 +385,19 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
 void add_view(CLI::App& app, ViewOptions& o) {
   CLI::App* sub =
       app.add_subcommand("view", "Play a run in a browser, from one HTML file; or as a movie");
-  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
+  add(sub, "DIR", o.folder, "DIR", "Folder of the results")->required();
   CLI::Option* page =
-      sub->add_option("-o,--output", o.output, "HTML file (default: view.html in DIR)")
-          ->type_name("FILE");
+      add(sub, "-o,--output", o.output, "FILE", "HTML file (default: view.html in DIR)");
   CLI::Option* movie =
-      sub->add_option("--movie", o.movie, "Write a movie instead, .mp4 or .gif; needs ffmpeg")
-          ->type_name("FILE")
+      add(sub, "--movie", o.movie, "FILE", "Write a movie instead, .mp4 or .gif; needs ffmpeg")
           ->excludes(page);
   sub->add_option("--colour", o.colour, "Quantity that colours the movie, as in picture")
-      ->check(CLI::IsMember(quantity_names()))
+      ->check(CLI::IsMember(names_of(field_quantities())))
       ->needs(movie);
   sub->add_flag("--chains", o.chains, "Contact forces as lines in the movie")->needs(movie);
   add_window(sub, o.window)->needs(movie);
   add_range(sub, o.range)->needs(movie);
-  sub->add_option("--rate", o.rate, "Frames of the run per second of the movie")
-      ->type_name("N")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 60))
+  add_whole(sub, "--rate", o.rate, 60, "Frames of the run per second of the movie")
       ->capture_default_str()
       ->needs(movie);
 }

@@ -41,9 +41,8 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
       used.empty() ? "apothem --help" : fmt::format("apothem {} --help", at.get_name());
   // What could not be understood is more telling than what is missing because of it.
   const std::vector<std::string> rest = at.remaining();
-  const auto option = std::find_if(rest.begin(), rest.end(), [](const std::string& word) {
-    return word.size() > 1 && word[0] == '-';
-  });
+  const auto option = std::ranges::find_if(
+      rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   std::string what = error.what();
   if (option != rest.end()) {
     what = unknown_option(at, *option);

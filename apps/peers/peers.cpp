@@ -113,8 +113,7 @@ class GreinerHormann {
     for (size_t i = 0; i < ring.size(); ++i) {
       order.push_back(static_cast<int>(nodes_.size()));
       nodes_.push_back({ring[i]});
-      std::sort(on[i].begin(), on[i].end(),
-                [&](int m, int n) { return nodes_[m].along < nodes_[n].along; });
+      std::ranges::sort(on[i], [&](int m, int n) { return nodes_[m].along < nodes_[n].along; });
       order.insert(order.end(), on[i].begin(), on[i].end());
     }
     for (size_t k = 0; k < order.size(); ++k) {

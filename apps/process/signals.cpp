@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "apps/commands.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
@@ -63,11 +64,6 @@ void handle(int signal, void (*handler)(int)) {
 };
 #endif
 
-double seconds_between(const timespec& from, const timespec& to) {
-  return static_cast<double>(to.tv_sec - from.tv_sec) +
-         1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec);
-}
-
 }  // namespace
 
 void heed_signals() noexcept {
@@ -95,7 +91,7 @@ Finishing::~Finishing() {
 bool Finishing::asked() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC_COARSE, &now);  // within 4 ms, in a few nanoseconds
-  const double since = seconds_between(last_, now);
+  const double since = in_seconds(now) - in_seconds(last_);
   last_ = now;
   if (since > longest_) {
     longest_ = since;

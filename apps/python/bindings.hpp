@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/polygon/polygon.hpp"
 #include "geometry/potential/potential.hpp"
 #include "lib/run/run.hpp"
 

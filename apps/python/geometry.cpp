@@ -149,7 +149,7 @@ PotentialChoice choice_of(const std::string& potential, const std::string& field
 py::object contact(const Polygon& a, const Polygon& b, const std::string& method, double stiffness,
                    const std::string& potential, const std::string& field,
                    const py::object& reference) {
-  if (std::find(kPairMethods.begin(), kPairMethods.end(), method) == kPairMethods.end()) {
+  if (std::ranges::find(kPairMethods, method) == kPairMethods.end()) {
     throw std::invalid_argument("method must be one of \"edge\", \"overlap\", \"exact\"");
   }
   if (!(stiffness > 0 && std::isfinite(stiffness))) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/text/words.hpp"
+
 namespace apothem::python {
 namespace {
 
@@ -40,12 +42,6 @@ Array of_bodies(const Bodies& bodies, double RigidBody::*value) {
   Array array(static_cast<py::ssize_t>(list.size()));
   std::ranges::transform(list, array.mutable_data(), value);
   return array;
-}
-
-std::vector<std::string> body_names(const Bodies& bodies) {
-  std::vector<std::string> names;
-  for (const RigidBody& body : model_of(bodies.run).bodies) names.push_back(body.name);
-  return names;
 }
 
 py::array_t<bool> present(const Bodies& bodies) {
@@ -163,7 +159,9 @@ body that the scene will ever have; `present` says which of them are in the worl
       .def_property_readonly("force", &state_view<Bodies, &State::f>,
                              "View (n, 3): force, N, and moment about the mass centre, N m, of "
                              "contacts and of added forces. Without gravity.")
-      .def_property_readonly("names", &body_names, "List of the n names.")
+      .def_property_readonly(
+          "names", [](const Bodies& b) { return names_of(model_of(b.run).bodies); },
+          "List of the n names.")
       .def_property_readonly(
           "mass", [](const Bodies& b) { return of_bodies(b, &RigidBody::mass); },
           "Copy (n,): masses, kg.")

@@ -11,7 +11,7 @@ namespace {
 
 // The curve at x by linear interpolation, NaN outside of it. Its points go on in x.
 double value_at(const Curve& curve, double x) {
-  const auto after = std::lower_bound(curve.x.begin(), curve.x.end(), x);
+  const auto after = std::ranges::lower_bound(curve.x, x);
   if (after == curve.x.end() || (after == curve.x.begin() && *after > x)) return std::nan("");
   const auto i = static_cast<size_t>(after - curve.x.begin());
   if (i == 0) return curve.y[0];
@@ -47,9 +47,8 @@ CurveDifference difference(const Curve& curve, const Curve& reference,
 
 std::string label_of(const CurvePanel& panel, const Curve& reference) {
   if (!reference.label.empty()) return reference.label;
-  const auto labelled = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) {
-    return c.style == reference.style && !c.label.empty();
-  });
+  const auto labelled = std::ranges::find_if(
+      panel.curves, [&](const Curve& c) { return c.style == reference.style && !c.label.empty(); });
   return labelled == panel.curves.end() ? "reference" : labelled->label;
 }
 

@@ -1,10 +1,9 @@
 #include "apps/reproduce/reader.hpp"
 
-#include <algorithm>
-
 #include "apps/reproduce/comparison.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/output/history.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -23,7 +22,7 @@ void FigureReader::panel(const JsonValue& value) {
   JsonObject object(in_, value);
   CurvePanel& panel = figure_.shown.panels.emplace_back();
   figure_.sources.emplace_back();
-  if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
+  object.read("title", panel.title, &JsonReader::string);
   panel.x_label = axis_label(object.required("x", "name [unit]"));
   panel.y_label = axis_label(object.required("y", "name [unit]"));
   if (const JsonValue* v = object.optional("x_logarithmic")) panel.x_logarithmic = v->boolean();
@@ -46,13 +45,10 @@ void FigureReader::curve(const JsonValue& value, CurvePanel& panel) {
   JsonObject object(in_, value);
   Curve& curve = panel.curves.emplace_back();
   CurveSource& source = figure_.sources.back().emplace_back();
-  if (const JsonValue* v = object.optional("label")) curve.label = in_.string(*v);
+  object.read("label", curve.label, &JsonReader::string);
   curve.colour = static_cast<int>(panel.curves.size()) - 1;
-  if (const JsonValue* v = object.optional("colour")) curve.colour = in_.count(*v);
-  if (const JsonValue* v = object.optional("style")) {
-    curve.style =
-        static_cast<CurveStyle>(in_.choice(*v, {"line", "dashed", "marks", "error_bars"}));
-  }
+  object.read("colour", curve.colour, &JsonReader::count);
+  object.choose("style", curve.style, {"line", "dashed", "marks", "error_bars"});
   if (is_table_source(value)) {
     source.rows = read_table_source(in_, object, data_);
     return object.finish();
@@ -82,8 +78,8 @@ void FigureReader::table(JsonObject& object, CurveSource& source, bool is_scene,
   const JsonValue* x = object.optional("x");
   const JsonValue& y = object.required("y", "a column");
   for (auto& [axis, key] : {std::pair(&source.x, std::string("x")), {&source.y, "y"}}) {
-    if (const JsonValue* v = object.optional(key + "_offset")) axis->offset = in_.number(*v, "");
-    if (const JsonValue* v = object.optional(key + "_scale")) axis->scale = in_.number(*v, "");
+    object.read(key + "_offset", axis->offset, &JsonReader::number, "");
+    object.read(key + "_scale", axis->scale, &JsonReader::number, "");
   }
   (is_scene ? source.scene : source.reference) = in_.string(name);
   if (is_scene) {
@@ -112,7 +108,7 @@ CurveSource::Tolerance FigureReader::compared(const JsonValue& value) {
   };
   const double rms = part("rms"), largest = part("max");
   const JsonValue& basis = object.required("basis", "what the reference rests on");
-  const auto kind = static_cast<Basis>(in_.choice(basis, {kBases.begin(), kBases.end()}));
+  const auto kind = in_.choice<Basis>(basis, kBases);
   object.finish();
   return {rms, largest, kind};
 }
@@ -121,11 +117,8 @@ void FigureReader::surface(JsonObject& object, CurveSource& source, const JsonVa
                            const JsonValue& body, const JsonValue* x, const JsonValue& y) {
   const Scene scene = scene_of(name);
   source.frame = frame_time(object.required("time", "s"), scene);
-  const std::vector<DeformableBody>& bodies = scene.model.deformables;
-  std::vector<std::string> names;
-  names.reserve(bodies.size());
-  for (const DeformableBody& b : bodies) names.push_back(b.name);
-  source.surface = static_cast<int>(scene.model.bodies.size()) + in_.choice(body, names);
+  source.surface = static_cast<int>(scene.model.bodies.size()) +
+                   in_.choice(body, names_of(scene.model.deformables));
   source.x.column = x ? std::vector<std::string>{"x", "y"}[in_.choice(*x, {"x", "y"})] : "x";
   source.y.column =
       std::vector<std::string>{"pressure", "traction"}[in_.choice(y, {"pressure", "traction"})];

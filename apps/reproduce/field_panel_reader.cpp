@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/reproduce/sources.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -19,13 +20,10 @@ void FigureReader::field_panel(const JsonValue& value) {
   JsonObject object(in_, value);
   FieldPanel& panel = figure_.shown_fields.panels.emplace_back();
   figure_.field_sources.emplace_back();
-  std::vector<std::string> names;
-  names.reserve(field_quantities().size());
-  for (const FieldQuantity& q : field_quantities()) names.emplace_back(q.name);
   const JsonValue& quantity = object.required("field", "a quantity");
-  panel.quantity = &field_quantities()[in_.choice(quantity, names)];
+  panel.quantity = &field_quantities()[in_.choice(quantity, names_of(field_quantities()))];
   panel.unit = panel.quantity->unit;
-  if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
+  object.read("title", panel.title, &JsonReader::string);
   const JsonValue* scale = object.optional("scale");
   const JsonValue* unit = object.optional("unit");
   if (scale) panel.scale = in_.positive(*scale, "");
@@ -65,7 +63,7 @@ void FigureReader::field(const JsonValue& value, FieldPanel& panel) {
   JsonObject object(in_, value);
   ShownField& shown = panel.fields.emplace_back();
   FieldSource& source = figure_.field_sources.back().emplace_back();
-  if (const JsonValue* v = object.optional("label")) shown.label = in_.string(*v);
+  object.read("label", shown.label, &JsonReader::string);
   const JsonValue* scene = object.optional("scene");
   const JsonValue* reference = object.optional("reference");
   const JsonValue* study = object.optional("study");

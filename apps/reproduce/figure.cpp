@@ -29,8 +29,7 @@ std::vector<Vec2> profile(const CurveSource& source, const std::string& runs) {
     points.emplace_back(source.x.shown(source.x.column == "x" ? middle.x() : middle.y()),
                         source.y.shown(source.y.column == "pressure" ? s.pressure : s.traction));
   }
-  std::sort(points.begin(), points.end(),
-            [](const Vec2& a, const Vec2& b) { return a.x() < b.x(); });
+  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) { return a.x() < b.x(); });
   return points;
 }
 
@@ -53,8 +52,8 @@ void add_rows(const std::vector<TablePoint>& points, Curve& curve) {
 }  // namespace
 
 const FieldSource* first_reference(const std::vector<FieldSource>& sources) {
-  const auto found = std::find_if(sources.begin(), sources.end(),
-                                  [](const FieldSource& s) { return !s.reference.empty(); });
+  const auto found =
+      std::ranges::find_if(sources, [](const FieldSource& s) { return !s.reference.empty(); });
   return found == sources.end() ? nullptr : &*found;
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 namespace {
 
@@ -28,16 +30,9 @@ constexpr std::array kQuantities{
     NamedQuantity{"singular_area", "singular area", "m^2"},
     NamedQuantity{"singular_length", "length of the singular segment", "m"}};
 
-template <class Names, class Name>
-std::vector<std::string> list(const Names& names, Name name) {
-  std::vector<std::string> result;
-  for (const auto& n : names) result.emplace_back(name(n));
-  return result;
-}
-
 const PotentialPiece* piece_of(const PotentialMap& map, int edge) {
-  const auto found = std::find_if(map.pieces.begin(), map.pieces.end(),
-                                  [&](const PotentialPiece& p) { return p.edge == edge; });
+  const auto found =
+      std::ranges::find_if(map.pieces, [&](const PotentialPiece& p) { return p.edge == edge; });
   return found == map.pieces.end() ? nullptr : &*found;
 }
 
@@ -87,7 +82,7 @@ class PanelReader {
   PotentialPanelSource read(const JsonValue& value) {
     JsonObject object(in_, value);
     PotentialPanelSource panel;
-    if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
+    object.read("title", panel.title, &JsonReader::string);
     const JsonValue& shapes = object.required("shapes", "array of polygons");
     for (const JsonValue& item : in_.array(shapes)) panel.shapes.push_back(shape(item));
     if (panel.shapes.empty()) in_.fail(shapes, "must hold at least one polygon");
@@ -99,12 +94,9 @@ class PanelReader {
   PotentialShape shape(const JsonValue& value) {
     JsonObject object(in_, value);
     PotentialShape result;
-    if (const JsonValue* v = object.optional("label")) result.shown.label = in_.string(*v);
+    object.read("label", result.shown.label, &JsonReader::string);
     auto kind = MapKind::distance;
-    if (const JsonValue* v = object.optional("potential")) {
-      kind = static_cast<MapKind>(
-          in_.choice(*v, list(kMapKinds, [](std::string_view name) { return name; })));
-    }
+    object.choose("potential", kind, kMapKinds);
     PotentialChoice choice;
     if (const JsonValue* v = object.optional("reference")) choice = reference(*v);
     const JsonValue& ring = object.required("polygon", "[[x, y], ...] in m");
@@ -113,9 +105,7 @@ class PanelReader {
     } catch (const InvalidPolygon& error) {
       in_.fail(ring, std::string("the polygon is not usable: ") + error.what());
     }
-    if (const JsonValue* v = object.optional("expect")) {
-      for (const JsonValue& item : in_.array(*v)) number(item, result);
-    }
+    object.each("expect", [&](const JsonValue& item) { number(item, result); });
     object.finish();
     return result;
   }
@@ -123,8 +113,7 @@ class PanelReader {
   PotentialChoice reference(const JsonValue& value) {
     PotentialChoice choice;
     if (value.type() == JsonValue::Type::string) {
-      const auto names = list(kReferences, [](const NamedReference& r) { return r.name; });
-      choice.reference = kReferences[in_.choice(value, names)].reference;
+      choice.reference = kReferences[in_.choice(value, names_of(kReferences))].reference;
     } else {
       choice.reference = PotentialChoice::Reference::length;
       choice.length = in_.positive(value, "m");
@@ -136,12 +125,11 @@ class PanelReader {
     JsonObject object(in_, value);
     PotentialNumber& n = shape.numbers.emplace_back();
     const JsonValue& quantity = object.required("quantity", "a quantity of a potential");
-    n.quantity = static_cast<Quantity>(
-        in_.choice(quantity, list(kQuantities, [](const NamedQuantity& q) { return q.name; })));
+    n.quantity = in_.choice<Quantity>(quantity, names_of(kQuantities));
     if (n.quantity >= Quantity::reference && !shape.shown.map.singular) {
       in_.fail(quantity, "only the distance potential has a reference length");
     }
-    if (const JsonValue* v = object.optional("label")) n.label = in_.string(*v);
+    object.read("label", n.label, &JsonReader::string);
     if (n.quantity == Quantity::phi) point(object, n, shape);
     if (n.quantity == Quantity::gradient) {
       const JsonValue& edge = object.required("edge", "the number of an edge, from 0");
@@ -149,11 +137,7 @@ class PanelReader {
       if (!piece_of(shape.shown.map, n.edge))
         in_.fail(edge, "no part of the polygon has this edge");
     }
-    n.value = in_.number(object.required("value", "the number to expect"), "");
-    n.tolerance = in_.positive(object.required("tolerance", "allowed difference"), "");
-    n.basis = static_cast<Basis>(in_.choice(object.required("basis", "what the value rests on"),
-                                            {kBases.begin(), kBases.end()}));
-    n.source = in_.string(object.required("source", "where the value comes from"));
+    n.expected = read_expected(in_, object);
     object.finish();
   }
 
@@ -190,11 +174,10 @@ std::vector<ReportNumber> potential_numbers(const std::vector<PotentialPanelSour
     for (const PotentialShape& shape : panel.shapes) {
       for (const PotentialNumber& n : shape.numbers) {
         const NamedQuantity& quantity = kQuantities[static_cast<size_t>(n.quantity)];
-        const double value = value_of(n, shape.shown.map);
         const std::string what =
             n.label.empty() ? quantity.words : fmt::format("{} {}", quantity.words, n.label);
-        numbers.push_back({shape.shown.label, what, quantity.unit, n.value, value, n.tolerance,
-                           std::abs(value - n.value) <= n.tolerance, n.basis, n.source});
+        numbers.push_back(n.expected.beside(shape.shown.label, what, quantity.unit,
+                                            value_of(n, shape.shown.map)));
       }
     }
   }

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/reproduce/text.hpp"
 #include "lib/output/potential_figure.hpp"
-#include "lib/output/report.hpp"
-#include "lib/scene/json.hpp"
 
 namespace apothem {
 
@@ -27,9 +26,7 @@ struct PotentialNumber {
   Vec2 at = Vec2::Zero();  ///< of phi, m
   int edge = 0;            ///< of gradient
   std::string label;       ///< what it is in words
-  double value = 0, tolerance = 0;
-  Basis basis = Basis::theory;
-  std::string source;
+  ExpectedNumber expected;
 };
 
 /// A polygon with a potential, and the numbers that are stated of it.

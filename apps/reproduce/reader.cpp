@@ -35,32 +35,25 @@ void FigureReader::read(const JsonValue& document) {
   figure_.shown.title = in_.string(top.required("title", "string"));
   figure_.shown_fields.title = figure_.shown.title;
   figure_.text = read_figure_text(in_, top);
-  if (const JsonValue* v = top.optional("panels")) {
-    for (const JsonValue& item : in_.array(*v)) {
-      if (item.find("shapes")) {
-        figure_.potentials.push_back(read_potential_panel(in_, item));
-      } else if (item.find("field")) {
-        field_panel(item);
-      } else {
-        panel(item);
-      }
+  top.each("panels", [&](const JsonValue& item) {
+    if (item.find("shapes")) {
+      figure_.potentials.push_back(read_potential_panel(in_, item));
+    } else if (item.find("field")) {
+      field_panel(item);
+    } else {
+      panel(item);
     }
-  }
-  if (const JsonValue* v = top.optional("numbers")) {
-    for (const JsonValue& item : in_.array(*v)) {
-      scene_of(item);
-      figure_.numbers[in_.string(item)].clear();
-    }
-  }
-  if (const JsonValue* v = top.optional("studies")) {
-    for (const JsonValue& item : in_.array(*v)) figure_.studies.push_back(read_study(in_, item));
-  }
-  if (const JsonValue* v = top.optional("compare")) {
-    for (const JsonValue& item : in_.array(*v)) {
-      figure_.comparisons.push_back(read_comparison(in_, item, data_));
-    }
-  }
-  if (const JsonValue* v = top.optional("players")) players(*v);
+  });
+  top.each("numbers", [&](const JsonValue& item) {
+    scene_of(item);
+    figure_.numbers[in_.string(item)].clear();
+  });
+  top.each("studies",
+           [&](const JsonValue& item) { figure_.studies.push_back(read_study(in_, item)); });
+  top.each("compare", [&](const JsonValue& item) {
+    figure_.comparisons.push_back(read_comparison(in_, item, data_));
+  });
+  top.each("players", [&](const JsonValue& item) { player(item); });
   top.finish();
   if (figure_.scenes.empty() && figure_.shown.panels.empty() && figure_.field_sources.empty() &&
       figure_.potentials.empty()) {
@@ -68,17 +61,15 @@ void FigureReader::read(const JsonValue& document) {
   }
 }
 
-void FigureReader::players(const JsonValue& list) {
-  for (const JsonValue& item : in_.array(list)) {
-    if (item.type() == JsonValue::Type::object) {
-      JsonObject object(in_, item);
-      StudyPlayer& player = figure_.study_players.emplace_back();
-      player.run = in_.string(object.required("study", "folder of a run"));
-      player.label = in_.string(object.required("label", "what the report calls it"));
-      object.finish();
-    } else {
-      figure_.players.push_back(figure_.scenes[in_.choice(item, figure_.scenes)]);
-    }
+void FigureReader::player(const JsonValue& item) {
+  if (item.type() == JsonValue::Type::object) {
+    JsonObject object(in_, item);
+    StudyPlayer& player = figure_.study_players.emplace_back();
+    player.run = in_.string(object.required("study", "folder of a run"));
+    player.label = in_.string(object.required("label", "what the report calls it"));
+    object.finish();
+  } else {
+    figure_.players.push_back(figure_.scenes[in_.choice(item, figure_.scenes)]);
   }
 }
 
@@ -89,7 +80,7 @@ Vec2 FigureReader::range(const JsonValue& value) {
 }
 
 size_t FigureReader::index_of(const std::vector<std::string>& list, const std::string& name) {
-  return static_cast<size_t>(std::find(list.begin(), list.end(), name) - list.begin());
+  return static_cast<size_t>(std::ranges::find(list, name) - list.begin());
 }
 
 const std::vector<std::string>& FigureReader::holding(
@@ -136,7 +127,7 @@ std::vector<std::vector<std::string>> FigureReader::columns_of_table(const JsonV
 std::vector<std::string> figure_names(const std::string& data) {
   std::vector<std::string> names = names_in(data + "/figures");
   if (names.empty()) {
-    throw SceneError(data, 0, "", "holds no figures; name the folder that does with --data");
+    throw SceneError(data, "holds no figures; name the folder that does with --data");
   }
   const auto key = [](const std::string& name) {
     constexpr const char* kDigits = "0123456789";
@@ -145,8 +136,8 @@ std::vector<std::string> figure_names(const std::string& data) {
     const bool of_paper = name.starts_with("fig-");
     return std::tuple(!of_paper, name.substr(0, from), to - from, name.substr(from));
   };
-  std::sort(names.begin(), names.end(),
-            [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+  std::ranges::sort(names,
+                    [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
   return names;
 }
 

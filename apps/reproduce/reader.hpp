@@ -11,7 +11,7 @@
 namespace apothem {
 
 /// Reads one figure. What belongs to curves stands in curve_panel_reader.cpp, what belongs to
-/// fields in field_panel_reader.cpp, the rest in figure_reader.cpp.
+/// fields in field_panel_reader.cpp, the rest in reader.cpp.
 class FigureReader {
  public:
   FigureReader(const std::string& data, Figure& figure, const std::string& file)
@@ -48,7 +48,7 @@ class FigureReader {
   FrameTime frame_time(const JsonValue& value, const Scene& scene);
   Scene scene_of(const JsonValue& scene);
   std::vector<std::vector<std::string>> columns_of_table(const JsonValue& reference);
-  void players(const JsonValue& list);
+  void player(const JsonValue& item);
 
   const std::string& data_;
   Figure& figure_;

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "apps/commands.hpp"
 #include "apps/data_folder.hpp"
@@ -28,11 +26,11 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
   if (options.figures == std::vector<std::string>{"all"}) return known;
   std::vector<std::string> names;
   for (const std::string& name : options.figures) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (std::ranges::find(known, name) == known.end()) {
       throw UsageError("reproduce", fmt::format("there is no figure {} (known: all, {})",
                                                 suggest(name, known), fmt::join(known, ", ")));
     }
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
   return names;
 }
@@ -245,7 +243,7 @@ class Reproduction {
     }
     for (const StudyPlayer& player : figure.study_players) {
       std::string name = player.run;
-      std::replace(name.begin(), name.end(), '/', '-');
+      std::ranges::replace(name, '/', '-');
       write_player(folders_.studies + "/" + player.run, player.label, name, report);
     }
   }
@@ -275,8 +273,7 @@ class Reproduction {
     const std::vector<std::string>& quantities = figure.numbers.at(scene);
     for (const nlohmann::json& e : outcome.at("expectations")) {
       const std::string quantity = e.at("quantity");
-      if (!quantities.empty() &&
-          std::find(quantities.begin(), quantities.end(), quantity) == quantities.end()) {
+      if (!quantities.empty() && std::ranges::find(quantities, quantity) == quantities.end()) {
         continue;
       }
       const nlohmann::json& value = e.at("value");  // null if the run has no row in its time window

@@ -92,7 +92,6 @@ void FigureRuns::begin(const std::string& name) const {
 void FigureRuns::keep(const std::string& figure, const std::string& name,
                       const std::string& status) {
   planned_.at(name).over = true;
-  ++kept_;
   fmt::print("{}: {} {} (unchanged, not run again)\n", figure, name, status);
   std::fflush(stdout);
 }
@@ -102,7 +101,6 @@ void FigureRuns::end(const std::string& figure, const std::string& name, const s
   Planned& planned = planned_.at(name);
   write_record(planned.folder, planned.key, true, seconds);
   planned.over = true;
-  ++done_;
   expected_ += planned.seconds, taken_ += seconds;
   fmt::print("{}: {} {} ({:.1f} s, about {} left)\n", figure, name, status, seconds, time_left());
   std::fflush(stdout);
@@ -137,7 +135,7 @@ std::string FigureRuns::time_left() const {
 }
 
 int FigureRuns::run(const std::string& figure, const std::string& scene) {
-  if (has(scene)) return exit_code::done;
+  if (outcomes_.contains(scene)) return exit_code::done;
   plan({scene});
   const Planned& planned = planned_.at(scene);
   const Clock::time_point start = Clock::now();
@@ -171,8 +169,8 @@ int FigureRuns::run(const std::string& figure, const FigureStudy& study, bool qu
   if (planned.over) return exit_code::done;
   // Sweeps see themselves whether their scenes have changed.
   const FigureStudy::Commands& commands = study.of(quick);
-  const bool sweeps = std::all_of(commands.begin(), commands.end(),
-                                  [](const auto& command) { return command[0] == "sweep"; });
+  const bool sweeps =
+      std::ranges::all_of(commands, [](const auto& command) { return command[0] == "sweep"; });
   if (planned.ended && !sweeps) {
     keep(figure, study.name, "done");
     return exit_code::done;

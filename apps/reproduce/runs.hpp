@@ -2,7 +2,6 @@
 // scene by the same program, is not done again; one that was interrupted goes on.
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
@@ -31,13 +30,8 @@ class FigureRuns {
   [[nodiscard]] const std::string& outcome(const std::string& scene) const {
     return outcomes_.at(scene);
   }
-  [[nodiscard]] bool has(const std::string& scene) const { return outcomes_.count(scene) > 0; }
-  [[nodiscard]] const std::string& folder() const { return folder_; }
   /// Whether a run has become unstable.
   [[nodiscard]] bool unstable() const { return unstable_; }
-  /// How many runs were done, and how many were there already.
-  [[nodiscard]] size_t done() const { return done_; }
-  [[nodiscard]] size_t kept() const { return kept_; }
 
  private:
   // What is known of a run before it is done.
@@ -64,7 +58,6 @@ class FigureRuns {
   std::map<std::string, std::string> outcomes_;  // run.json of scenes
   double expected_ = 0, taken_ = 0;              // seconds of the runs that were done
   bool unstable_ = false;
-  size_t done_ = 0, kept_ = 0;
 };
 
 }  // namespace apothem

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 namespace {
 
@@ -20,13 +22,6 @@ FigureStudy::Commands read_commands(const JsonReader& in, const JsonValue& value
   return commands;
 }
 
-std::string replaced(std::string text, const std::string& mark, const std::string& by) {
-  for (size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += by.size()) {
-    text.replace(at, mark.size(), by);
-  }
-  return text;
-}
-
 }  // namespace
 
 FigureStudy read_study(const JsonReader& in, const JsonValue& value) {
@@ -35,7 +30,7 @@ FigureStudy read_study(const JsonReader& in, const JsonValue& value) {
   const JsonValue& name = object.required("name", "name of the folder of results");
   study.name = in.string(name);
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-'; };
-  if (study.name.empty() || !std::all_of(study.name.begin(), study.name.end(), plain)) {
+  if (study.name.empty() || !std::ranges::all_of(study.name, plain)) {
     in.fail(name, "must consist of letters, digits and hyphens");
   }
   study.commands = read_commands(in, object.required("commands", "array of commands"));

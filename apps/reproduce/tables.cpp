@@ -27,7 +27,7 @@ bool fits(const std::string& cell, const std::string& content) {
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file), rows_(read_csv(file)) {
-    if (rows_.empty()) throw SceneError(file, 0, "", "is empty");
+    if (rows_.empty()) throw SceneError(file, "is empty");
   }
 
   [[nodiscard]] size_t column(const std::string& name) const {
@@ -49,10 +49,10 @@ class Table {
     for (size_t i = 1; i < rows_.size(); ++i) {
       const auto meets = [&](const auto& condition) {
         const std::string& cell = this->cell(rows_[i], condition.first);
-        return std::any_of(condition.second->begin(), condition.second->end(),
-                           [&](const std::string& content) { return fits(cell, content); });
+        return std::ranges::any_of(*condition.second,
+                                   [&](const std::string& content) { return fits(cell, content); });
       };
-      if (std::all_of(conditions.begin(), conditions.end(), meets)) rows.push_back(&rows_[i]);
+      if (std::ranges::all_of(conditions, meets)) rows.push_back(&rows_[i]);
     }
     return rows;
   }
@@ -94,7 +94,7 @@ TablePoint share_point(double x, size_t events, size_t trials) {
 TablePoint point_of(Kind kind, double x, const std::vector<double>& values) {
   if (kind == Kind::share) {
     const auto is_true = [](double v) { return v != 0; };
-    const auto events = std::count_if(values.begin(), values.end(), is_true);
+    const auto events = std::ranges::count_if(values, is_true);
     return share_point(x, static_cast<size_t>(events), values.size());
   }
   const MeanEstimate e = estimate_mean(values);
@@ -105,8 +105,8 @@ TablePoint point_of(Kind kind, double x, const std::vector<double>& values) {
 void axis_of(const JsonReader& in, JsonObject& object, const std::string& key,
              TableSource::Axis& axis) {
   axis.column = in.string(object.required(key, "a column"));
-  if (const JsonValue* v = object.optional(key + "_offset")) axis.offset = in.number(*v, "");
-  if (const JsonValue* v = object.optional(key + "_scale")) axis.scale = in.number(*v, "");
+  object.read(key + "_offset", axis.offset, &JsonReader::number, "");
+  object.read(key + "_scale", axis.scale, &JsonReader::number, "");
   if (const JsonValue* v = object.optional(key + "_absolute")) axis.absolute = v->boolean();
 }
 
@@ -120,7 +120,7 @@ void require_columns(const TableSource& source, const std::string& file) {
   for (const std::string* name : {&source.x.column, &source.y.column, &source.of}) {
     if (!name->empty()) static_cast<void>(table.column(*name));
   }
-  if (table.chosen(source).empty()) throw SceneError(file, 0, "", "has no row that is asked for");
+  if (table.chosen(source).empty()) throw SceneError(file, "has no row that is asked for");
 }
 
 }  // namespace
@@ -153,9 +153,7 @@ TableSource read_table_source(const JsonReader& in, JsonObject& object, const st
       }
     }
   }
-  if (const JsonValue* v = object.optional("take")) {
-    source.kind = static_cast<Kind>(in.choice(*v, {"value", "share", "counts", "mean"}));
-  }
+  object.choose("take", source.kind, {"value", "share", "counts", "mean"});
   axis_of(in, object, "x", source.x);
   axis_of(in, object, "y", source.y);
   if (source.kind == Kind::counts) {
@@ -192,9 +190,9 @@ std::vector<TablePoint> points_of(const TableSource& source, const std::string& 
     }
   }
   for (const auto& [at, values] : groups) points.push_back(point_of(source.kind, at, values));
-  if (points.empty()) throw SceneError(file, 0, "", "has no row with the values that are shown");
-  std::stable_sort(points.begin(), points.end(),
-                   [](const TablePoint& a, const TablePoint& b) { return a.x < b.x; });
+  if (points.empty()) throw SceneError(file, "has no row with the values that are shown");
+  std::ranges::stable_sort(points,
+                           [](const TablePoint& a, const TablePoint& b) { return a.x < b.x; });
   return points;
 }
 
@@ -203,19 +201,15 @@ TableComparison read_comparison(const JsonReader& in, const JsonValue& value,
   JsonObject object(in, value);
   TableComparison result;
   result.label = in.string(object.required("label", "what is compared"));
-  result.kind = static_cast<TableComparison::Kind>(
-      in.choice(object.required("state", "what is stated"), {"difference", "ratio", "order"}));
+  result.kind = in.choice<TableComparison::Kind>(object.required("state", "what is stated"),
+                                                 {"difference", "ratio", "order"});
   for (auto& [key, source] : {std::pair("first", &result.first), {"second", &result.second}}) {
     JsonObject side(in, object.required(key, "a table"));
     *source = read_table_source(in, side, data);
     side.finish();
   }
-  if (const JsonValue* v = object.optional("at")) result.name_of_x = in.string(*v);
-  result.value = in.number(object.required("value", "the number to expect"), "");
-  result.tolerance = in.positive(object.required("tolerance", "allowed difference"), "");
-  result.basis = static_cast<Basis>(in.choice(object.required("basis", "what the value rests on"),
-                                              {kBases.begin(), kBases.end()}));
-  result.source = in.string(object.required("source", "where the value comes from"));
+  object.read("at", result.name_of_x, &JsonReader::string);
+  result.expected = read_expected(in, object);
   object.finish();
   return result;
 }
@@ -226,14 +220,12 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
   const std::vector<TablePoint> second = points_of(c.second, data, studies);
   std::vector<ReportNumber> numbers;
   const auto state = [&](const std::string& what, double value) {
-    numbers.push_back({"", what, "1", c.value, value, c.tolerance,
-                       std::abs(value - c.value) <= c.tolerance, c.basis, c.source});
+    numbers.push_back(c.expected.beside("", what, "1", value));
   };
   size_t common = 0, at_least = 0;
   for (const TablePoint& a : first) {
-    const auto found = std::find_if(second.begin(), second.end(), [&](const TablePoint& b) {
-      return std::abs(b.x - a.x) <= 1e-9 * std::abs(a.x);
-    });
+    const auto found = std::ranges::find_if(
+        second, [&](const TablePoint& b) { return std::abs(b.x - a.x) <= 1e-9 * std::abs(a.x); });
     if (found == second.end()) continue;
     const TablePoint& b = *found;
     ++common;
@@ -251,7 +243,7 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
           static_cast<double>(at_least) / static_cast<double>(common));
   }
   if (common == 0) {
-    throw SceneError(path_of(c.first, data, studies), 0, "",
+    throw SceneError(path_of(c.first, data, studies),
                      "has no x in common with " + path_of(c.second, data, studies));
   }
   return numbers;

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lib/output/report.hpp"
-#include "lib/scene/json.hpp"
+#include "apps/reproduce/text.hpp"
 #include "lib/text/csv.hpp"
 
 namespace apothem {
@@ -60,9 +59,7 @@ struct TableComparison {
   Kind kind = Kind::ratio;
   TableSource first, second;
   std::string label, name_of_x;
-  double value = 0, tolerance = 0;
-  Basis basis = Basis::code;
-  std::string source;
+  ExpectedNumber expected;
 };
 /// Reads an element of "compare". Throws SceneError.
 TableComparison read_comparison(const JsonReader& in, const JsonValue& value,

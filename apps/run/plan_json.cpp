@@ -141,8 +141,9 @@ PlanEstimates estimates_of(const Scene& scene) {
       model.contact.damping.normal > 0 || model.contact.mass_damping > 0 ||
       std::ranges::any_of(model.contact.rules,
                           [](const ContactRule& r) { return r.damping.has_value(); }) ||
-      std::any_of(model.materials.begin(), model.materials.end(),
-                  [](const Material& m) { return m.mass_damping > 0 || m.stiffness_damping > 0; });
+      std::ranges::any_of(model.materials, [](const Material& m) {
+        return m.mass_damping > 0 || m.stiffness_damping > 0;
+      });
   estimates.empty_history = scene.model.regions.empty() && output.track.empty() &&
                             output.track_deformables.empty() && output.points.empty() &&
                             output.track_surfaces.empty();

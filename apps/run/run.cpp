@@ -77,8 +77,8 @@ void print_summary(const Run& run) {
       extremes.energy_error);
   if (!run.load_steps().empty()) {
     const LoadStep& last = run.load_steps().back();
-    const auto worst = static_cast<BodyIndex>(std::max_element(last.off.begin(), last.off.end()) -
-                                              last.off.begin());
+    const auto worst =
+        static_cast<BodyIndex>(std::ranges::max_element(last.off) - last.off.begin());
     fmt::print(
         "force balance: of all bodies \"{}\" is farthest from it, by {:.3g} N, {:.2g} of the "
         "load\n",
@@ -111,9 +111,8 @@ int exit_code_of(const Run& run, bool verify) {
       break;
   }
   const auto missed = [](const Outcome& o) { return !o.met; };
-  return verify && std::any_of(run.outcomes().begin(), run.outcomes().end(), missed)
-             ? exit_code::missed
-             : exit_code::done;
+  return verify && std::ranges::any_of(run.outcomes(), missed) ? exit_code::missed
+                                                               : exit_code::done;
 }
 
 // What run.json holds, and where it is.

@@ -6,7 +6,6 @@
 
 #include <csignal>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "lib/sweep/study.hpp"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <thread>
@@ -213,7 +212,7 @@ class Sweep {
       return exit_code::interrupted;
     }
     const auto failed = [](const auto& count) { return has_failed(count.first); };
-    return std::any_of(counts.begin(), counts.end(), failed) ? exit_code::missed : exit_code::done;
+    return std::ranges::any_of(counts, failed) ? exit_code::missed : exit_code::done;
   }
 
   /// The tables of what there is. Returns 1 unless all runs are done.
@@ -243,7 +242,7 @@ class Sweep {
 
   [[nodiscard]] bool is_complete() const {
     const std::vector<PlannedRun>& runs = study_.plan().runs;
-    return std::all_of(runs.begin(), runs.end(), [&](const PlannedRun& run) {
+    return std::ranges::all_of(runs, [&](const PlannedRun& run) {
       const RunState state = study_.state_of(run);
       return state == RunState::done || has_failed(state);
     });

@@ -81,8 +81,7 @@ class PieceJoiner {
     std::vector<int> neighbours;
     neighbours.reserve(common.size());
     for (const auto& [j, length] : common) neighbours.push_back(j);
-    std::stable_sort(neighbours.begin(), neighbours.end(),
-                     [&](int a, int b) { return common[a] > common[b]; });
+    std::ranges::stable_sort(neighbours, [&](int a, int b) { return common[a] > common[b]; });
     for (const int j : neighbours) {
       std::optional<Ring> both = united(pieces_.list[j].ring, ring);
       if (!both) continue;
@@ -118,11 +117,10 @@ void put_in_order(Pieces& pieces, int outline_size) {
   }
   for (Piece& piece : pieces.list) {
     for (int& node : piece.ring) node = index[node];
-    std::rotate(piece.ring.begin(), std::min_element(piece.ring.begin(), piece.ring.end()),
-                piece.ring.end());
+    std::rotate(piece.ring.begin(), std::ranges::min_element(piece.ring), piece.ring.end());
   }
   sorted.list = std::move(pieces.list);
-  std::sort(sorted.list.begin(), sorted.list.end(), [](const Piece& a, const Piece& b) {
+  std::ranges::sort(sorted.list, [](const Piece& a, const Piece& b) {
     return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
   });
   pieces = std::move(sorted);

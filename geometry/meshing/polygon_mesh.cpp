@@ -82,7 +82,7 @@ class Collapse {
     std::vector<int> along;
     for (const int c : cells_of_[u]) {
       const std::vector<int>& cell = mesh_.cells[c];
-      if (std::find(cell.begin(), cell.end(), v) == cell.end()) continue;
+      if (std::ranges::find(cell, v) == cell.end()) continue;
       bool is_edge = false;
       for_edges(c, [&](int a, int b) { is_edge |= std::minmax(a, b) == std::minmax(u, v); });
       if (!is_edge || cell.size() == 3) return {};
@@ -109,10 +109,10 @@ class Collapse {
 
     std::vector<int> around = cells_of_[u];
     around.insert(around.end(), cells_of_[v].begin(), cells_of_[v].end());
-    std::sort(around.begin(), around.end());
+    std::ranges::sort(around);
     around.erase(std::unique(around.begin(), around.end()), around.end());
     for (const Vec2& place : places) {
-      const bool valid = std::all_of(around.begin(), around.end(), [&](int c) {
+      const bool valid = std::ranges::all_of(around, [&](int c) {
         return is_valid(ring_after(c, u, v, place)) || !is_valid(cell_ring(mesh_, mesh_.cells[c]));
       });
       if (!valid) continue;
@@ -125,7 +125,7 @@ class Collapse {
   // The ring of cell c after the nodes u and v have been joined at `place`.
   [[nodiscard]] std::vector<Vec2> ring_after(int c, int u, int v, const Vec2& place) const {
     const std::vector<int>& cell = mesh_.cells[c];
-    const bool both = std::find(cell.begin(), cell.end(), u) != cell.end();
+    const bool both = std::ranges::find(cell, u) != cell.end();
     std::vector<Vec2> ring;
     for (const int node : cell) {
       if (node == v && both) continue;
@@ -139,10 +139,10 @@ class Collapse {
     mesh_.points[u] = place;
     for (const int c : around) {
       std::vector<int>& cell = mesh_.cells[c];
-      if (std::find(cell.begin(), cell.end(), u) != cell.end()) {
+      if (std::ranges::find(cell, u) != cell.end()) {
         std::erase(cell, v);
       } else {
-        std::replace(cell.begin(), cell.end(), v, u);
+        std::ranges::replace(cell, v, u);
       }
     }
     cells_of_[u] = around;
@@ -157,7 +157,7 @@ class Collapse {
         if (distance(u, v) < shortest_) ++cells_at[std::minmax(u, v)];
       });
     }
-    return static_cast<int>(std::count_if(cells_at.begin(), cells_at.end(), [&](const auto& edge) {
+    return static_cast<int>(std::ranges::count_if(cells_at, [&](const auto& edge) {
       const auto& [u, v] = edge.first;
       return edge.second == 2 || freedom_[u] != kNowhere || freedom_[v] != kNowhere;
     }));
@@ -174,7 +174,7 @@ class Collapse {
     mesh_.points.resize(count);
     for (std::vector<int>& cell : mesh_.cells) {
       for (int& node : cell) node = index[node];
-      std::rotate(cell.begin(), std::min_element(cell.begin(), cell.end()), cell.end());
+      std::rotate(cell.begin(), std::ranges::min_element(cell), cell.end());
     }
   }
 

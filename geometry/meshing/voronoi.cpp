@@ -111,7 +111,7 @@ std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2
     if (!is_finite(place)) continue;
     if (near[i] == kNone || strictly_inside(region.vertices(), place)) moved[i] = place;
   }
-  if (std::find(exact.begin(), exact.end(), true) == exact.end()) return moved;
+  if (std::ranges::find(exact, true) == exact.end()) return moved;
   Pieces pieces = diagram.cut(region, exact);
   join_pieces(pieces);
   for (const Piece& piece : pieces.list) {
@@ -140,8 +140,7 @@ std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t s
   std::vector<Vec2> sites;
   std::set<std::pair<double, double>> taken;
   for (int failures = 0; static_cast<int>(sites.size()) < count;) {
-    const size_t t = std::upper_bound(area_up_to.begin(), area_up_to.end(), uniform() * sum) -
-                     area_up_to.begin();
+    const size_t t = std::ranges::upper_bound(area_up_to, uniform() * sum) - area_up_to.begin();
     const auto& [i, j, k] = triangles[std::min(t, triangles.size() - 1)];
     double u = uniform();
     double v = uniform();

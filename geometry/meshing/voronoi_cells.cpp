@@ -93,7 +93,7 @@ VoronoiDiagram::Parts voronoi_parts(const std::vector<Vec2>& sites, const Box& b
     face->info() = static_cast<int>(parts.centres.size());
     std::array<int, 3>& triple = parts.triples.emplace_back();
     for (int k = 0; k < 3; ++k) triple[k] = face->vertex(k)->info();
-    std::sort(triple.begin(), triple.end());
+    std::ranges::sort(triple);
     const auto& [i, j, k] = triple;
     parts.centres.push_back(circumcentre(parts.sites[i], parts.sites[j], parts.sites[k]));
   }

@@ -20,8 +20,8 @@ std::vector<Vec2> ring_of(const Block& block, const Vec2& place, double scale = 
 std::vector<size_t> by_size(const std::vector<Block>& blocks) {
   std::vector<size_t> order(blocks.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t i, size_t j) { return blocks[i].scale > blocks[j].scale; });
+  std::ranges::stable_sort(order,
+                           [&](size_t i, size_t j) { return blocks[i].scale > blocks[j].scale; });
   return order;
 }
 
@@ -160,7 +160,7 @@ class Growth {
     }
     std::vector<int> order(blocks_.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
+    std::ranges::sort(order, [&](int i, int j) {
       const auto row = [&](int k) { return std::floor(places_[k].y() / (kRow * size_)); };
       return std::tuple(row(i), places_[i].x(), i) < std::tuple(row(j), places_[j].x(), j);
     });
@@ -195,7 +195,7 @@ class Growth {
     movable_.clear();
     for (int i = 0; i < count_; ++i) {
       const auto near = [&](int k) { return (places_[i] - places_[k]).norm() < kAround * size_; };
-      if (!few || std::any_of(small.begin(), small.end(), near)) movable_.push_back(i);
+      if (!few || std::ranges::any_of(small, near)) movable_.push_back(i);
     }
   }
 

@@ -137,7 +137,7 @@ void PackingSpace::move(int block, std::span<const Vec2> ring) {
   const bool same_cells = cells_of(box) == cells_of(boxes_[i]);
   if (!same_cells) leave(i);
   boxes_[i] = box;
-  std::copy(ring.begin(), ring.end(), points_.begin() + static_cast<std::ptrdiff_t>(first_[i]));
+  std::ranges::copy(ring, points_.begin() + static_cast<std::ptrdiff_t>(first_[i]));
   if (!same_cells) enter(i);
 }
 

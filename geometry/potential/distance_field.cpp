@@ -1,6 +1,5 @@
 #include "geometry/potential/distance_field.hpp"
 
-#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 

@@ -116,8 +116,7 @@ class DistanceTrace {
       const int b = next(a, field.size);
       lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
     }
-    std::sort(crossings_.begin(), crossings_.end(),
-              [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
+    std::ranges::sort(crossings_, [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
     for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const Crossing& a = crossings_[i];
       const Crossing& b = crossings_[i + 1];

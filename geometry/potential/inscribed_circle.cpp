@@ -8,9 +8,8 @@
 //   zero where the points of edge i that are nearest to T lie inside the edge, otherwise it is
 //   quadratic in the size of T.
 // - Lower bound: f_i is nowhere below its tangent plane at any point. A step to the highest point
-// of
-//   the tangent planes is not taken if it would make f smaller; the steps converge quadratically to
-//   a centre.
+//   of the tangent planes is not taken if it would make f smaller; the steps converge quadratically
+//   to a centre.
 // The result is a value of f at a point inside the polygon, so neither round-off nor a degenerate
 // position can make the radius too large. The upper bound ends the search only when no larger
 // circle can be left. A long corridor, which would be costly with the cells of a grid, consists of
@@ -75,7 +74,7 @@ struct Cell {
   // The corner that is opposite to the longest side.
   [[nodiscard]] int longest() const {
     const std::array<double, 3> sides{side(0), side(1), side(2)};
-    return static_cast<int>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+    return static_cast<int>(std::ranges::max_element(sides) - sides.begin());
   }
 };
 
@@ -116,7 +115,7 @@ class Search {
         cell.bound = corner_bound(cell);
         queue_.push_back(std::move(cell));
       }
-      std::make_heap(queue_.begin(), queue_.end(), lower);
+      std::ranges::make_heap(queue_, lower);
     }
   }
 
@@ -131,7 +130,7 @@ class Search {
     for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
 
     while (!queue_.empty() && queue_.front().bound >= radius_ - tolerance()) {
-      std::pop_heap(queue_.begin(), queue_.end(), lower);
+      std::ranges::pop_heap(queue_, lower);
       Cell cell = std::move(queue_.back());
       queue_.pop_back();
       if (cell.edges.empty()) {
@@ -153,13 +152,13 @@ class Search {
   [[nodiscard]] double radius() const { return radius_; }
 
   [[nodiscard]] std::vector<Centre> centres() {
-    std::stable_sort(found_.begin(), found_.end(),
-                     [](const Found& a, const Found& b) { return a.height > b.height; });
+    std::ranges::stable_sort(found_,
+                             [](const Found& a, const Found& b) { return a.height > b.height; });
     const double same = kSamePlace * radius_ + 16 * tolerance();
     std::vector<Centre> centres;
     for (const Found& found : found_) {
       if (found.height < radius_ - tolerance()) break;
-      const bool known = std::any_of(centres.begin(), centres.end(), [&](const Centre& c) {
+      const bool known = std::ranges::any_of(centres, [&](const Centre& c) {
         if (c.first == c.last) return (found.point - c.first).norm() <= same;
         return PolygonEdge(c.first, c.last).distance(found.point) <= same;
       });
@@ -234,7 +233,7 @@ class Search {
     reach += kNoise;
     distances_.clear();
     for (const int e : edges) distances_.push_back(edges_[e].distance(middle));
-    const double least = *std::min_element(distances_.begin(), distances_.end());
+    const double least = *std::ranges::min_element(distances_);
     cell.bound = std::min(cell.bound, least + reach);
     ++examined_;
     if (cell.bound < radius_ - tolerance()) return;
@@ -274,7 +273,7 @@ class Search {
   void queue(Cell cell) {
     radius_ = std::max(radius_, cell.height);
     queue_.push_back(std::move(cell));
-    std::push_heap(queue_.begin(), queue_.end(), lower);
+    std::ranges::push_heap(queue_, lower);
   }
 
   // Improves the lower bound of a cell: moves its point upwards with the tangent planes. The cell

@@ -91,7 +91,7 @@ void BoxGrid::enter(std::int32_t i) {
   Entry& entry = entries_[i];
   const int level = entry.level;
   if (level == kEmpty) return;
-  if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) levels_.push_back(level);
+  if (std::ranges::find(levels_, level) == levels_.end()) levels_.push_back(level);
   std::int32_t& head = heads_[slot(entry.column, entry.row, level, mask_)];
   entry.next = head;
   head = i;

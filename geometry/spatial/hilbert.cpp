@@ -42,7 +42,7 @@ std::vector<int> hilbert_order(const std::vector<Vec2>& points) {
     keys.emplace_back(extent > 0 ? place(square(p.x() - box.x0), square(p.y() - box.y0)) : 0,
                       number);
   }
-  std::sort(keys.begin(), keys.end());
+  std::ranges::sort(keys);
   std::vector<int> order;
   order.reserve(keys.size());
   for (const auto& [key, number] : keys) order.push_back(number);

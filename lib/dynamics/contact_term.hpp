@@ -1,7 +1,6 @@
 // All contact of a scene as a term: from the model to surfaces, from faults to messages.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "lib/contact/contacts.hpp"

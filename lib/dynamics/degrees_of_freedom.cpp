@@ -1,7 +1,6 @@
 #include "lib/dynamics/degrees_of_freedom.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "lib/execution/dispatch.hpp"
@@ -122,8 +121,7 @@ void DegreesOfFreedom::add_nodes(const DeformableBody& body, std::span<const dou
   }
   if (!body.displacement.empty()) {
     displaced_.resize(layout_.size());
-    std::copy(body.displacement.begin(), body.displacement.end(),
-              &displaced_[layout_.node(body.first_node)]);
+    std::ranges::copy(body.displacement, &displaced_[layout_.node(body.first_node)]);
   }
   add_supports(body);
 }

@@ -112,7 +112,7 @@ double Equilibrium::ramp(double from, double until) const {
 // Friction follows the displacements since the start of the load step, in one step of 1 s.
 void Equilibrium::find_forces(State& state, const State& before) {
   std::ranges::fill(state.layout.of_rigid(state.f), 0.);
-  std::fill(lambda_.begin(), lambda_.end(), 0.);
+  std::ranges::fill(lambda_, 0.);
   for (size_t c = 0; c < displacement_.size(); ++c) {
     displacement_[c] = state.x[c] - before.x[c] + (slip_.empty() ? 0 : slip_[c]);
   }
@@ -149,7 +149,7 @@ void Equilibrium::find_slip(const State& state) {
 
 void Equilibrium::find_masses(const State& state) {
   for (std::vector<double>* v : {&stiffness_.elastic, &stiffness_.contact, &stiffness_.rigid}) {
-    std::fill(v->begin(), v->end(), 0.);
+    std::ranges::fill(*v, 0.);
   }
   for (const auto& term : terms_) term->add_stiffness(state, stiffness_);
   searches_ = searches();

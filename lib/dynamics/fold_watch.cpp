@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/unstable.hpp"
 

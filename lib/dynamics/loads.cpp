@@ -7,10 +7,9 @@
 namespace apothem {
 
 bool Loads::needed(const Model& model) {
-  return std::any_of(model.deformables.begin(), model.deformables.end(),
-                     [](const DeformableBody& body) {
-                       return !body.dead_loads.empty() || !body.pressures.empty();
-                     });
+  return std::ranges::any_of(model.deformables, [](const DeformableBody& body) {
+    return !body.dead_loads.empty() || !body.pressures.empty();
+  });
 }
 
 std::string Loads::describe() const {

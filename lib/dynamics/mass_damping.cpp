@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "lib/execution/elementary.hpp"
 #include "lib/fem/mass.hpp"
@@ -19,12 +18,9 @@ constexpr double kDampTime = 1.5;  // of a coordinate, ns
 std::vector<double> node_rates(const Model& model, const DeformableBody& body) {
   const Mesh& mesh = body.mesh;
   std::vector<double> rate(mesh.nodes.size(), 0), mass(mesh.nodes.size(), 0);
-  std::vector<Vec2> corners;
   for (ElementIndex e = 0; e < mesh.element_count(); ++e) {
     const Material& m = model.materials[body.material_of(e)];
-    corners.clear();
-    for (const int node : mesh.element(e)) corners.push_back(mesh.nodes[node]);
-    const std::vector<double> areas = corner_areas(corners);
+    const std::vector<double> areas = corner_areas(mesh.places(mesh.element(e)));
     for (size_t i = 0; i < areas.size(); ++i) {
       const int node = mesh.element(e)[i];
       rate[node] += m.mass_damping * m.density * areas[i];
@@ -39,13 +35,12 @@ std::vector<double> node_rates(const Model& model, const DeformableBody& body) {
 
 bool MassDamping::needed(const Model& model) {
   return model.contact.mass_damping > 0 ||
-         std::any_of(model.deformables.begin(), model.deformables.end(),
-                     [&](const DeformableBody& body) {
-                       const std::vector<MaterialIndex> materials = body.materials();
-                       return std::any_of(materials.begin(), materials.end(), [&](auto material) {
-                         return model.materials[material].mass_damping > 0;
-                       });
-                     });
+         std::ranges::any_of(model.deformables, [&](const DeformableBody& body) {
+           const std::vector<MaterialIndex> materials = body.materials();
+           return std::ranges::any_of(materials, [&](auto material) {
+             return model.materials[material].mass_damping > 0;
+           });
+         });
 }
 
 MassDamping::MassDamping(const Model& model, const DegreesOfFreedom& dofs, int threads)

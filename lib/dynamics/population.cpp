@@ -1,7 +1,5 @@
 #include "lib/dynamics/population.hpp"
 
-#include <algorithm>
-
 #include "geometry/spatial/boxes.hpp"
 #include "lib/model/rotation.hpp"
 #include "lib/model/statistics.hpp"

@@ -1,8 +1,6 @@
 // Bodies that come later and bodies that leave the world: who comes or goes, and when.
 #pragma once
 
-#include <span>
-#include <string>
 #include <vector>
 
 #include "lib/archive/archive.hpp"

@@ -1,6 +1,5 @@
 // What a simulation tells of its present state.
 #include <algorithm>
-#include <cmath>
 
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/elements.hpp"
@@ -48,11 +47,6 @@ std::vector<CauchyStress> Simulation::stresses(const std::vector<TrackedPoint>& 
   return result;
 }
 
-const std::vector<double>& Simulation::node_mass() const {
-  static const std::vector<double> kNone;
-  return elements_ ? elements_->elements().mass() : kNone;
-}
-
 Extremes Simulation::extremes() const {
   Extremes extremes;
   if (contact_) {
@@ -85,8 +79,8 @@ std::vector<PairDepth> Simulation::overlaps() const {
   for (PairDepth& pair : pairs) {
     pair.share = pair.depth / std::min(inradius_once(pair.a), inradius_once(pair.b));
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const PairDepth& p, const PairDepth& q) { return p.share > q.share; });
+  std::ranges::stable_sort(
+      pairs, [](const PairDepth& p, const PairDepth& q) { return p.share > q.share; });
   return pairs;
 }
 

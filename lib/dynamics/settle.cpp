@@ -32,7 +32,7 @@ class Relaxation {
         limit_(start.stability_limit),
         given_(start.state.v),
         slip_(given_.size()) {
-    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    std::ranges::fill(state_.v, 0.0);
     for (RigidIndex i = 0; i < state_.layout.rigid_bodies; ++i) {
       if (model_.bodies[i].motion == Motion::free || model_.bodies[i].servo) free_.push_back(i);
       const double* const rate = &given_[state_.layout.rigid(i)];
@@ -52,13 +52,12 @@ class Relaxation {
     for (std::int64_t step = 0; calm < kCalm; ++step) {
       if (step == kMostSteps) refuse();
       if (stop && stop()) throw Stopped();
-      const double stiffest =
-          lambda_.empty() ? 0 : *std::max_element(lambda_.begin(), lambda_.end());
+      const double stiffest = lambda_.empty() ? 0 : *std::ranges::max_element(lambda_);
       const double dt = kStep * std::min(limit_, stiffest > 0 ? 2 / std::sqrt(stiffest) : HUGE_VAL);
       double kinetic = accelerate(dt);
       calm = worst_share_ <= 1 ? calm + 1 : 0;
       if (kinetic < last) {
-        std::fill(state_.v.begin(), state_.v.end(), 0.0);
+        std::ranges::fill(state_.v, 0.0);
         kinetic = 0;
       }
       last = kinetic;

@@ -180,11 +180,8 @@ void Simulation::change_population(std::span<const BodyIndex> leave,
   for (const BodyIndex b : come) copy_velocity(b, start);
   find_forces(state_.v, 0);
   finish_look();
-  const Impulse after = dofs_.momentum(state_);
   ledger_.refresh(state_);
-  ledger_.add_work(energies().total_error - error);
-  ledger_.add_impulse(
-      {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
+  book_change(error, momentum);
 }
 
 void Simulation::set_velocities(std::span<const double> velocities) {
@@ -193,6 +190,10 @@ void Simulation::set_velocities(std::span<const double> velocities) {
   for (size_t c = 0; c < velocities.size(); ++c) {
     if (dofs_.can_move(c)) state_.v[c] = velocities[c];
   }
+  book_change(error, momentum);
+}
+
+void Simulation::book_change(double error, const Impulse& momentum) {
   const Impulse after = dofs_.momentum(state_);
   ledger_.add_work(energies().total_error - error);
   ledger_.add_impulse(
@@ -206,7 +207,7 @@ void Simulation::damp(double h) {
 void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit,
                              bool still) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
-  std::fill(lambda_.begin(), lambda_.end(), 0.);
+  std::ranges::fill(lambda_, 0.);
   for (const auto& term : terms_)
     term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit, false, still});
 }
@@ -343,6 +344,8 @@ void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool 
       "time.step or time.safety",
       error, guard_.in_play(), at_time(state_), cause));
 }
+
+const std::vector<double>& Simulation::node_mass() const { return mass_of(elements_); }
 
 Energies Simulation::losses() const {
   Energies sum;

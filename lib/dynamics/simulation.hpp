@@ -125,6 +125,8 @@ class Simulation {
  private:
   void make_terms(int threads);
   void start_ledger();
+  // Work and impulse from outside, with the error of energy and the momentum before they came.
+  void book_change(double error, const Impulse& momentum);
   void take_step();
   void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -23,14 +22,27 @@ namespace {
 constexpr double kSmooth = .5;
 constexpr double kCoarsest = .6;
 
-// A body in the search for the stiffest pair.
-struct Lander {
-  std::vector<Landing> landings;
+// Bounds of all landings of one body or of several.
+struct LandingBounds {
   double longest = 0;   // m
   double mobility = 0;  // the highest, with friction springs in proportion, 1/kg
   double slope = 0;     // of the potential, 1/m
   double slide = 0;     // the same along the strips, 1/kg
   int pieces = 1;       // the most
+
+  void include(const LandingBounds& other) {
+    longest = std::max(longest, other.longest);
+    mobility = std::max(mobility, other.mobility);
+    slope = std::max(slope, other.slope);
+    slide = std::max(slide, other.slide);
+    pieces = std::max(pieces, other.pieces);
+  }
+};
+
+// A body in the search for the stiffest pair.
+struct Lander {
+  std::vector<Landing> landings;
+  LandingBounds bounds;
 };
 
 // lambda over the normal stiffness of a body on a landing of this breadth (m), 1/kg. Friction
@@ -89,15 +101,11 @@ std::vector<Lander> landers(const Model& model, double softest, double ratio) {
     const double energy = body.motion == Motion::free ? energies[i] : largest;
     const double slopes = slope(i) + flattest(slope(i));
     Lander lander;
-    lander.slope = slope(i);
     lander.landings = landings(body, energy / (softest * model.thickness * slopes));
     for (const Landing& landing : lander.landings) {
-      lander.longest = std::max(lander.longest, landing.length);
-      lander.mobility =
-          std::max(lander.mobility, ratio > 0 ? mobility_of(body, landing, landing.breadth, ratio)
-                                              : landing.mobility);
-      lander.slide = std::max(lander.slide, landing.slide);
-      lander.pieces = std::max(lander.pieces, landing.pieces);
+      const double mobility =
+          ratio > 0 ? mobility_of(body, landing, landing.breadth, ratio) : landing.mobility;
+      lander.bounds.include({landing.length, mobility, slope(i), landing.slide, landing.pieces});
     }
     all.push_back(std::move(lander));
   }
@@ -119,40 +127,29 @@ double flat_mobility(const RigidBody& body) {
 namespace {
 
 // A bound of lambda over the thickness of two bodies, or of a body with each of a group.
-template <class Flat>
-double flat_bound(const Lander& a, const Flat& b, const PairLaw& worst) {
+double flat_bound(const LandingBounds& a, const LandingBounds& b, const PairLaw& worst) {
   const double normal =
       std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
   return worst.normal_stiffness * normal +
          std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness * (a.slide + b.slide);
 }
 
-// Bounds of some bodies.
 struct FlatGroup {
   std::vector<int> members;
-  double longest = 0, mobility = 0, slope = 0, slide = 0;
-  int pieces = 1;
-
-  void add(int member, const Lander& f) {
-    members.push_back(member);
-    longest = std::max(longest, f.longest);
-    mobility = std::max(mobility, f.mobility);
-    slope = std::max(slope, f.slope);
-    slide = std::max(slide, f.slide);
-    pieces = std::max(pieces, f.pieces);
-  }
+  LandingBounds bounds;
 };
 
 // Bodies of about the same size go together, so that the bounds of a group are sharp.
 std::vector<FlatGroup> groups_by_length(const std::vector<Lander>& all) {
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, std::greater(), [&](int i) { return all[i].longest; });
+  std::ranges::stable_sort(order, std::greater(), [&](int i) { return all[i].bounds.longest; });
   const auto size = static_cast<size_t>(std::sqrt(static_cast<double>(all.size()))) + 1;
   std::vector<FlatGroup> groups;
   for (const int i : order) {
     if (groups.empty() || groups.back().members.size() == size) groups.emplace_back();
-    groups.back().add(i, all[i]);
+    groups.back().members.push_back(i);
+    groups.back().bounds.include(all[i].bounds);
   }
   return groups;
 }
@@ -169,7 +166,7 @@ StepLimit contact_step_limit(const Model& model) {
   const auto bound = [&](int i) {
     double most = 0;
     for (const FlatGroup& group : groups) {
-      most = std::max(most, flat_bound(all[i], group, stiffest));
+      most = std::max(most, flat_bound(all[i].bounds, group.bounds, stiffest));
     }
     return most;
   };
@@ -193,10 +190,10 @@ StepLimit contact_step_limit(const Model& model) {
   for (const auto& [minus_bound, i] : order) {
     if (!(-minus_bound > worst)) break;
     for (const FlatGroup& group : groups) {
-      if (!(flat_bound(all[i], group, stiffest) > worst)) continue;
+      if (!(flat_bound(all[i].bounds, group.bounds, stiffest) > worst)) continue;
       for (const int j : group.members) {
         if (i == j || (!model.bodies[i].can_move() && !model.bodies[j].can_move())) continue;
-        if (flat_bound(all[i], all[j], stiffest) > worst) look_at(i, j);
+        if (flat_bound(all[i].bounds, all[j].bounds, stiffest) > worst) look_at(i, j);
       }
     }
   }

@@ -138,12 +138,6 @@ double dispatch(const Blocks& blocks) {
   });
 }
 
-std::vector<Vec2> places(const Mesh& mesh, int element) {
-  std::vector<Vec2> x;
-  for (const int node : mesh.element(element)) x.push_back(mesh.nodes[node]);
-  return x;
-}
-
 }  // namespace
 
 FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
@@ -172,7 +166,7 @@ void FiniteElements::add_masses(int index, const ElementSet& set) {
   for (int e = 0; e < mesh.element_count(); ++e) {
     const ElementMaterial& of_element = material(index, e);
     damped_ = damped_ || of_element.stiffness_damping > 0;
-    const std::vector<Vec2> x = places(mesh, e);
+    const std::vector<Vec2> x = mesh.places(mesh.element(e));
     const std::vector<double> areas = corner_areas(x);
     for (size_t i = 0; i < areas.size(); ++i) {
       shortest_edge_ = std::min(shortest_edge_, (x[i] - before(x, i)).norm());
@@ -227,11 +221,10 @@ void FiniteElements::add_chunk(std::span<const Member> elements) {
   for (const Member& m : elements) {
     for (const int node : corners_of(m)) nodes.push_back(sets_[m.set].first_node + node);
   }
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   const auto local_of = [&](int node) {
-    return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) -
-                                      nodes.begin());
+    return static_cast<std::uint16_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
   };
   for (size_t begin = 0; begin < elements.size();) {
     const int corners = static_cast<int>(corners_of(elements[begin]).size());
@@ -259,8 +252,8 @@ void FiniteElements::add_chunk(std::span<const Member> elements) {
       const size_t block = k / kLanes, lane = k % kLanes;
       const Member& m = elements[std::min(begin + k, end - 1)];
       with_element(behaviour.kind, [&]<class Element>(Element) {
-        Element::prepare(places(*sets_[m.set].mesh, m.element), behaviour.material.elastic,
-                         behaviour.thickness,
+        Element::prepare(sets_[m.set].mesh->places(sets_[m.set].mesh->element(m.element)),
+                         behaviour.material.elastic, behaviour.thickness,
                          &data_[runs_.back().data + block * stored * kLanes + lane]);
       });
       if (begin + k >= end) continue;
@@ -470,7 +463,7 @@ void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double>
   constexpr double kProbe =
       1e-6;  // times the shortest edge: a step in the linear range, far above round-off
   const double step = kProbe * shortest_edge_;
-  std::fill(sums.begin(), sums.end(), 0.);
+  std::ranges::fill(sums, 0.);
   std::vector<Point<double>> moved, plus, minus;
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
                                      int element, const Point<double>* w) {

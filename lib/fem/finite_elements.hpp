@@ -15,7 +15,6 @@
 #pragma once
 
 #include <boost/align/aligned_allocator.hpp>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -7,7 +7,6 @@
 // the determinant of the deformation gradient F.
 #pragma once
 
-#include <array>
 #include <utility>
 
 #include "lib/execution/elementary.hpp"

@@ -1,8 +1,7 @@
 // The quadrilateral elements: with one integration point and bending stabilisation (Quad4), and
 // with full 2 x 2 integration (Quad4Full). The corners X_i lie at (xi, eta) = (-1,-1), (1,-1),
-// (1,1),
-// (-1,1), so that X = X_0 + A xi + B eta + Q xi eta; displacements u are interpolated in the same
-// way, with coefficients u_xi, u_eta and u_h in the place of A, B and Q.
+// (1,1), (-1,1), so that X = X_0 + A xi + B eta + Q xi eta; displacements u are interpolated in the
+// same way, with coefficients u_xi, u_eta and u_h in the place of A, B and Q.
 #pragma once
 
 #include <span>

@@ -1,5 +1,7 @@
 #include "lib/mesh/boundary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -30,10 +32,11 @@ Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
     if (!edge.on_boundary()) continue;
     Step& step = next[edge.nodes[0]];
     if (step.to >= 0) {
-      throw InvalidMesh::at_node(edge.nodes[0],
-                                 "is a pinch: elements " + std::to_string(step.element) + " and " +
-                                     std::to_string(edge.left) +
-                                     " meet there and in no edge; join or separate them");
+      throw InvalidMesh::at_node(
+          edge.nodes[0],
+          fmt::format(
+              "is a pinch: elements {} and {} meet there and in no edge; join or separate them",
+              step.element, edge.left));
     }
     step = {edge.nodes[1], edge.left};
   }
@@ -62,9 +65,7 @@ Boundary boundary(const Mesh& mesh) { return boundary(mesh, mesh_edges(mesh)); }
 std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop) {
   std::vector<double> radii;
   for (const int element : loop.elements) {
-    std::vector<Vec2> corners;
-    for (const int n : mesh.element(element)) corners.push_back(mesh.nodes[n]);
-    const Polygon polygon(corners);
+    const Polygon polygon(mesh.places(mesh.element(element)));
     radii.push_back(polygon.is_convex() ? inscribed_circle(polygon).radius
                                         : largest_inscribed_circle(polygon).radius);
   }

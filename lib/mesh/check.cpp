@@ -1,5 +1,7 @@
 #include "lib/mesh/check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
@@ -44,16 +46,15 @@ class Check {
   void arrays() const {
     if (mesh_.first.empty() || mesh_.first.front() != 0 ||
         mesh_.first.back() != static_cast<int>(mesh_.corners.size()) ||
-        !std::is_sorted(mesh_.first.begin(), mesh_.first.end())) {
+        !std::ranges::is_sorted(mesh_.first)) {
       throw InvalidMesh("the elements do not share out the list of corners", -1, -1);
     }
     if (mesh_.element_count() == 0) throw InvalidMesh("has no elements", -1, -1);
     for (int e = 0; e < mesh_.element_count(); ++e) {
       for (const int n : mesh_.element(e)) {
         if (is_node(n)) continue;
-        throw InvalidMesh::at_element(e, "has the corner " + std::to_string(n) +
-                                             ", but there are " +
-                                             std::to_string(mesh_.nodes.size()) + " nodes");
+        throw InvalidMesh::at_element(
+            e, fmt::format("has the corner {}, but there are {} nodes", n, mesh_.nodes.size()));
       }
     }
   }
@@ -71,8 +72,8 @@ class Check {
     const auto corners = mesh_.element(e);
     const size_t n = corners.size();
     if (n < 3) {
-      throw InvalidMesh::at_element(
-          e, "has " + std::to_string(n) + " corners; an element needs at least 3");
+      throw InvalidMesh::at_element(e,
+                                    fmt::format("has {} corners; an element needs at least 3", n));
     }
     repeated_corner(e);
     // Four left turns make a simple quadrilateral: their sum is a multiple of 360 degrees and less
@@ -84,8 +85,7 @@ class Check {
       if (n == 3) break;
     }
     if (!convex) general_element(e);
-    Box box;
-    for (const int c : corners) box.include(mesh_.nodes[c]);
+    const Box box = box_of(mesh_.places(corners));
     const double diagonal = hypotenuse(box.x1 - box.x0, box.y1 - box.y0);
     if (!(element_area(mesh_, e) >= kFlat * diagonal * diagonal)) {
       throw InvalidMesh::at_element(e, "is degenerate: its area is below 1e-12 of its diameter^2");
@@ -95,9 +95,7 @@ class Check {
   void repeated_corner(int e) const {
     const auto corners = mesh_.element(e);
     const auto refuse = [&](int node) {
-      throw InvalidMesh(
-          "element " + std::to_string(e) + " repeats its corner, node " + std::to_string(node), e,
-          node);
+      throw InvalidMesh(fmt::format("element {} repeats its corner, node {}", e, node), e, node);
     };
     if (corners.size() <= 4) {
       for (size_t i = 0; i < corners.size(); ++i) {
@@ -108,16 +106,15 @@ class Check {
       return;
     }
     std::vector<int> sorted(corners.begin(), corners.end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
+    const auto twice = std::ranges::adjacent_find(sorted);
     if (twice != sorted.end()) refuse(*twice);
   }
 
   // The full check, for elements with five or more corners and for those that fail the test above.
   void general_element(int e) const {
     const auto corners = mesh_.element(e);
-    std::vector<Vec2> ring;
-    for (const int c : corners) ring.push_back(mesh_.nodes[c]);
+    const std::vector<Vec2> ring = mesh_.places(corners);
     if (ring.size() == 3 && orientation(ring[0], ring[1], ring[2]) == 0) {
       throw InvalidMesh::at_element(e, "has no area: its corners are on one line");
     }
@@ -131,9 +128,8 @@ class Check {
       }
       if (ring.size() == 4 && rules_.convex_quadrilaterals) straight_or_reflex(e);
     } catch (const InvalidPolygon& error) {
-      throw InvalidMesh("element " + std::to_string(e) + " is not a simple polygon: " +
-                            error.what() + " (corner " + std::to_string(error.vertex()) +
-                            " is node " + std::to_string(corners[error.vertex()]) + ")",
+      throw InvalidMesh(fmt::format("element {} is not a simple polygon: {} (corner {} is node {})",
+                                    e, error.what(), error.vertex(), corners[error.vertex()]),
                         e, corners[error.vertex()]);
     }
   }
@@ -146,17 +142,18 @@ class Check {
                       mesh_.nodes[corners[(i + 2) % 4]]) > 0) {
         continue;
       }
-      throw InvalidMesh("element " + std::to_string(e) +
-                            " is a quadrilateral with a corner of 180 degrees or more at node " +
-                            std::to_string(node),
-                        e, node);
+      throw InvalidMesh(
+          fmt::format(
+              "element {} is a quadrilateral with a corner of 180 degrees or more at node {}", e,
+              node),
+          e, node);
     }
   }
 
   void dangling_nodes() const {
     std::vector<bool> used(mesh_.nodes.size(), false);
     for (const int c : mesh_.corners) used[c] = true;
-    const auto unused = std::find(used.begin(), used.end(), false);
+    const auto unused = std::ranges::find(used, false);
     if (unused == used.end()) return;
     throw InvalidMesh::at_node(static_cast<int>(unused - used.begin()), "belongs to no element");
   }
@@ -173,7 +170,7 @@ class Check {
     if (pairs.empty()) return;
     throw InvalidMesh::at_node(
         pairs.front().second,
-        "is in the same place as node " + std::to_string(pairs.front().first) + "; merge them");
+        fmt::format("is in the same place as node {}; merge them", pairs.front().first));
   }
 
   void boundary_edges_meet_in_nodes() const {
@@ -205,10 +202,9 @@ class Check {
       if (share <= 0 || share >= 1 || std::abs(cross(along, p)) > kOnEdge * along.squaredNorm()) {
         continue;
       }
-      throw InvalidMesh("node " + std::to_string(node) + " hangs on the edge of nodes " +
-                            std::to_string(edge.nodes[0]) + " and " +
-                            std::to_string(edge.nodes[1]) + " of element " +
-                            std::to_string(edge.left) + ", which does not have it as a corner",
+      throw InvalidMesh(fmt::format("node {} hangs on the edge of nodes {} and {} of element {}, "
+                                    "which does not have it as a corner",
+                                    node, edge.nodes[0], edge.nodes[1], edge.left),
                         edge.left, node);
     }
   }
@@ -219,62 +215,64 @@ class Check {
     }
     const auto at = [&](int node) -> const Vec2& { return mesh_.nodes[node]; };
     if (!segments_meet(at(p.nodes[0]), at(p.nodes[1]), at(q.nodes[0]), at(q.nodes[1]))) return;
-    throw InvalidMesh::at_element(std::max(p.left, q.left),
-                                  "overlaps or touches element " +
-                                      std::to_string(std::min(p.left, q.left)) +
-                                      " without sharing its nodes");
+    throw InvalidMesh::at_element(
+        std::max(p.left, q.left),
+        fmt::format("overlaps or touches element {} without sharing its nodes",
+                    std::min(p.left, q.left)));
   }
 
   void one_body() const {
     const Boundary outline = boundary(mesh_, edges_);
     if (outline.components > 1) {
-      throw InvalidMesh("falls into " + std::to_string(outline.components) +
-                            " parts that share no edge; give each its own body",
-                        -1, -1);
+      throw InvalidMesh(
+          fmt::format("falls into {} parts that share no edge; give each its own body",
+                      outline.components),
+          -1, -1);
     }
-    const auto outer = std::count_if(outline.loops.begin(), outline.loops.end(),
-                                     [](const BoundaryLoop& loop) { return !loop.is_hole; });
+    const auto outer = std::ranges::count_if(
+        outline.loops, [](const BoundaryLoop& loop) { return !loop.is_hole; });
     if (outer != 1) throw InvalidMesh("elements cover each other", -1, -1);
   }
 
   void group(const MeshGroup& part) const {
-    const std::string name = "group \"" + part.name + "\" ";
+    const std::string name = fmt::format("group \"{}\" ", part.name);
     for (size_t i = 0; i < part.nodes.size(); ++i) {
       if (!is_node(part.nodes[i])) {
-        throw InvalidMesh(name + "names node " + std::to_string(part.nodes[i]) + ", which is none",
-                          -1, -1);
+        throw InvalidMesh(fmt::format("{}names node {}, which is none", name, part.nodes[i]), -1,
+                          -1);
       }
       if (i > 0 && part.nodes[i] <= part.nodes[i - 1]) {
-        throw InvalidMesh(name + "does not name its nodes in ascending order", -1, part.nodes[i]);
+        throw InvalidMesh(fmt::format("{}does not name its nodes in ascending order", name), -1,
+                          part.nodes[i]);
       }
     }
     for (const auto& [a, b] : part.edges) {
       const MeshEdge* edge = find_edge(edges_, a, b);
       if (edge == nullptr || (edge->on_boundary() && edge->nodes[0] != a)) {
-        throw InvalidMesh(name + "has an edge from node " + std::to_string(a) + " to node " +
-                              std::to_string(b) + ", which no element has",
-                          -1, -1);
+        throw InvalidMesh(
+            fmt::format("{}has an edge from node {} to node {}, which no element has", name, a, b),
+            -1, -1);
       }
       for (const int node : {a, b}) {
-        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
+        if (std::ranges::binary_search(part.nodes, node)) continue;
         throw InvalidMesh(
-            name + "has an edge at node " + std::to_string(node) + ", but does not name the node",
-            -1, node);
+            fmt::format("{}has an edge at node {}, but does not name the node", name, node), -1,
+            node);
       }
     }
     for (size_t i = 0; i < part.elements.size(); ++i) {
       const int e = part.elements[i];
       if (e < 0 || e >= mesh_.element_count()) {
-        throw InvalidMesh(name + "names element " + std::to_string(e) + ", which is none", -1, -1);
+        throw InvalidMesh(fmt::format("{}names element {}, which is none", name, e), -1, -1);
       }
       if (i > 0 && e <= part.elements[i - 1]) {
-        throw InvalidMesh(name + "does not name its elements in ascending order", e, -1);
+        throw InvalidMesh(fmt::format("{}does not name its elements in ascending order", name), e,
+                          -1);
       }
       for (const int node : mesh_.element(e)) {
-        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
-        throw InvalidMesh(name + "names element " + std::to_string(e) + ", but not its node " +
-                              std::to_string(node),
-                          e, node);
+        if (std::ranges::binary_search(part.nodes, node)) continue;
+        throw InvalidMesh(fmt::format("{}names element {}, but not its node {}", name, e, node), e,
+                          node);
       }
     }
   }

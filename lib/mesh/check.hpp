@@ -15,8 +15,7 @@ struct MeshRules {
 /// - every element has three or more different corners and is a simple counter-clockwise polygon
 ///   (exact predicates) with an area above 1e-12 of its squared diagonal;
 /// - every node belongs to an element, and no two nodes are closer than 1e-12 of the mesh's size
-/// (so
-///   there are no cracks whose two faces coincide);
+///   (so there are no cracks whose two faces coincide);
 /// - every edge belongs to one element, or to two that run along it in opposite directions;
 /// - no node lies on a boundary edge of which it is not an end, within 1e-9 of the edge's length
 ///   (hanging node), and boundary edges meet only in common nodes, two edges in each;

@@ -37,8 +37,8 @@ class GmshMesh {
 
   void number_nodes() {
     const size_t count = file_.nodes.size();
-    const bool has_elements = std::any_of(file_.parts.begin(), file_.parts.end(),
-                                          [](const Part& part) { return part.dimension == 2; });
+    const bool has_elements =
+        std::ranges::any_of(file_.parts, [](const Part& part) { return part.dimension == 2; });
     if (!has_elements) {
       throw BadMeshText(std::string("has no triangles or quadrilaterals; mesh the surface (gmsh "
                                     "-2); ") +

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "lib/mesh/check.hpp"
 #include "lib/mesh/mesh.hpp"

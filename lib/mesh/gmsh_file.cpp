@@ -1,6 +1,7 @@
 #include "lib/mesh/gmsh_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <unordered_map>
 
@@ -98,11 +99,12 @@ constexpr ElementType kSolids[]{
     {12, "27-node hexahedron"},
     {17, "20-node hexahedron"},
 };
-// Gmsh's numbers of the element types that are read.
-constexpr int kPoint = 15;
-constexpr int kLine = 1;
-constexpr int kTriangle = 2;
-constexpr int kQuadrilateral = 3;
+// The element types that are read: points, lines, triangles and quadrilaterals.
+struct ReadType {
+  int number;  // of gmsh
+  int dimension, size;
+};
+constexpr auto kRead = std::to_array<ReadType>({{15, 0, 1}, {1, 1, 2}, {2, 2, 3}, {3, 2, 4}});
 
 // The reader of one text.
 class GmshReader {
@@ -331,24 +333,9 @@ class GmshReader {
   // physical groups, once for each; `may_repeat` recognises that.
   void add_element(Tag tag, int type, const std::vector<Tag>& physical, bool may_repeat) {
     GmshFile::Part part{tag, rows_.line(), 2, {-1, -1, -1, -1}, 0};
-    switch (type) {
-      case kPoint:
-        part.dimension = 0;
-        part.size = 1;
-        break;
-      case kLine:
-        part.dimension = 1;
-        part.size = 2;
-        break;
-      case kTriangle:
-        part.size = 3;
-        break;
-      case kQuadrilateral:
-        part.size = 4;
-        break;
-      default:
-        refuse_type(tag, type);
-    }
+    const auto read = std::ranges::find(kRead, type, &ReadType::number);
+    if (read == kRead.end()) refuse_type(tag, type);
+    part.dimension = read->dimension, part.size = read->size;
     for (int i = 0; i < part.size; ++i) {
       const Tag node = rows_.integer("the tag of a node");
       const auto found = node_of_.find(node);

@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "lib/mesh/boundary.hpp"
 
 namespace apothem {
 
 MeshGroup line_group(std::string name, std::vector<std::array<int, 2>> edges) {
   MeshGroup group{std::move(name), {}, std::move(edges)};
   for (const auto& [a, b] : group.edges) group.nodes.insert(group.nodes.end(), {a, b});
-  std::sort(group.nodes.begin(), group.nodes.end());
+  std::ranges::sort(group.nodes);
   group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()), group.nodes.end());
   return group;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

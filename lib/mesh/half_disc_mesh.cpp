@@ -60,9 +60,7 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   for (int k = 0; k < n; ++k) last.push_back(block(0, k));
   for (int k = 0; k < 2 * n; ++k) last.push_back(block(k, n));
   for (int k = n; k >= 0; --k) last.push_back(block(2 * n, k));
-  std::vector<Vec2> rim;
-  rim.reserve(last.size());
-  for (const int node : last) rim.push_back(mesh.nodes[node]);
+  const std::vector<Vec2> rim = mesh.places(last);
 
   // The first layer is at most as thick as a cell of the block; the number of layers is rounded up.
   const double length = std::numbers::pi / 2 - side;

@@ -50,7 +50,7 @@ std::array<double, 2> inverse_bilinear(const Vec2& a, const Vec2& b, const Vec2&
 // Mean-value coordinates of the origin.
 void mean_value(std::span<const Vec2> ring, std::span<double> weights) {
   const size_t n = ring.size();
-  std::fill(weights.begin(), weights.end(), 0.);
+  std::ranges::fill(weights, 0.);
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
     const size_t j = i + 1 == n ? 0 : i + 1;
@@ -62,7 +62,7 @@ void mean_value(std::span<const Vec2> ring, std::span<double> weights) {
     const double cosine = p.dot(q);
     const bool on_corner = p.isZero(0);
     if (on_corner || (sine == 0 && cosine < 0)) {  // at the corner, or on the edge
-      std::fill(weights.begin(), weights.end(), 0.);
+      std::ranges::fill(weights, 0.);
       weights[i] = on_corner ? 1 : q_length / (p_length + q_length);
       if (!on_corner) weights[j] = p_length / (p_length + q_length);
       return;
@@ -88,7 +88,7 @@ std::vector<Vec2> ring_about(const Mesh& mesh, int element, const Vec2& p) {
 void interpolation_weights(std::span<const Vec2> ring, std::span<double> weights) {
   if (ring.size() == 3) {
     const std::array<double, 3> w = barycentric(ring[0], ring[1], ring[2]);
-    std::copy(w.begin(), w.end(), weights.begin());
+    std::ranges::copy(w, weights.begin());
   } else if (ring.size() == 4 && smallest_turn(ring) > 0) {
     const auto [u, v] = inverse_bilinear(ring[0], ring[1], ring[2], ring[3]);
     weights[0] = (1 - u) * (1 - v);
@@ -112,11 +112,8 @@ std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p) {
   int nearest = -1;
   double least = HUGE_VAL;
   for (int e = 0; e < mesh.element_count() && least > 0; ++e) {
-    Box box;
-    for (const int c : mesh.element(e)) box.include(mesh.nodes[c]);
-    if (apart(box.grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
-    std::vector<Vec2> ring;
-    for (const int c : mesh.element(e)) ring.push_back(mesh.nodes[c]);
+    const std::vector<Vec2> ring = mesh.places(mesh.element(e));
+    if (apart(box_of(ring).grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
     const double distance =
         strictly_inside(ring, p) ? 0 : distance_to_ring(ring_about(mesh, e, p), Vec2::Zero());
     if (distance >= least || distance > reach) continue;

@@ -36,6 +36,13 @@ struct Mesh {
   [[nodiscard]] std::span<const int> element(int e) const {
     return {corners.data() + first[e], corners.data() + first[e + 1]};
   }
+  /// Positions of nodes, as of an element or a loop, m.
+  [[nodiscard]] std::vector<Vec2> places(std::span<const int> of_nodes) const {
+    std::vector<Vec2> result;
+    result.reserve(of_nodes.size());
+    for (const int node : of_nodes) result.push_back(nodes[node]);
+    return result;
+  }
   /// Appends an element with these nodes, which must run counter-clockwise.
   void add_element(std::span<const int> nodes_of_element) {
     corners.insert(corners.end(), nodes_of_element.begin(), nodes_of_element.end());

@@ -42,10 +42,10 @@ Reordering reorder_along_curve(Mesh& mesh) {
   result.groups = std::move(mesh.groups);
   for (MeshGroup& group : result.groups) {
     for (int& node : group.nodes) node = number[node];
-    std::sort(group.nodes.begin(), group.nodes.end());
+    std::ranges::sort(group.nodes);
     for (auto& edge : group.edges) edge = {number[edge[0]], number[edge[1]]};
     for (int& e : group.elements) e = place[e];
-    std::sort(group.elements.begin(), group.elements.end());
+    std::ranges::sort(group.elements);
   }
   mesh = std::move(result);
   return old;

@@ -41,7 +41,7 @@ std::vector<int> nodes_where(const Mesh& mesh, const Place& place) {
     for (int node = 0; node < static_cast<int>(mesh.nodes.size()); ++node) consider(node);
   }
   if (place.nearest && !nodes.empty()) {
-    nodes = {*std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) {
+    nodes = {*std::ranges::min_element(nodes, [&](int a, int b) {
       return (mesh.nodes[a] - *place.nearest).squaredNorm() <
              (mesh.nodes[b] - *place.nearest).squaredNorm();
     })};
@@ -58,9 +58,7 @@ std::vector<MeshEdge> edges_where(const Mesh& mesh, const Place& place) {
   }
   std::vector<MeshEdge> edges = boundary_edges(mesh);
   std::erase_if(edges, [&](const MeshEdge& edge) {
-    const auto selected = [&](int node) {
-      return std::binary_search(nodes.begin(), nodes.end(), node);
-    };
+    const auto selected = [&](int node) { return std::ranges::binary_search(nodes, node); };
     return !selected(edge.nodes[0]) || !selected(edge.nodes[1]) ||
            (!line.empty() && line.count(edge.nodes) == 0);
   });

@@ -68,8 +68,8 @@ Mesh join_triangles(const Mesh& mesh, double least_sine) {
   };
   const auto opposite = [&](int element, const MeshEdge& edge) {
     const auto corners = mesh.element(element);
-    return *std::find_if(corners.begin(), corners.end(),
-                         [&](int c) { return c != edge.nodes[0] && c != edge.nodes[1]; });
+    return *std::ranges::find_if(corners,
+                                 [&](int c) { return c != edge.nodes[0] && c != edge.nodes[1]; });
   };
   std::vector<Join> joins;
   for (const MeshEdge& edge : mesh_edges(mesh)) {
@@ -79,8 +79,8 @@ Mesh join_triangles(const Mesh& mesh, double least_sine) {
     const double quality = smallest_sine(mesh, corners);
     if (quality >= least_sine) joins.push_back({quality, edge.left, edge.right, corners});
   }
-  std::stable_sort(joins.begin(), joins.end(),
-                   [](const Join& a, const Join& b) { return a.quality > b.quality; });
+  std::ranges::stable_sort(joins,
+                           [](const Join& a, const Join& b) { return a.quality > b.quality; });
   std::vector<const Join*> join_of(mesh.element_count(), nullptr);
   for (const Join& join : joins) {
     if (join_of[join.left] != nullptr || join_of[join.right] != nullptr) continue;

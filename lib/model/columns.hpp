@@ -137,15 +137,6 @@ inline constexpr std::array kMomentumColumns{
     Column{"angular", "kg m^2/s"}, Column{"px_error", "kg m/s"},
     Column{"py_error", "kg m/s"},  Column{"angular_error", "kg m^2/s"}};
 
-/// The names of a table of columns.
-template <class Columns>
-std::vector<std::string> names_of(const Columns& columns) {
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const auto& column : columns) names.emplace_back(column.name);
-  return names;
-}
-
 /// A column of history.csv.
 struct HistoryColumn {
   std::string name;  ///< as in "beam.ux"

@@ -18,7 +18,7 @@ std::array<double, 3> RigidBody::inverse_mass() const {
 std::vector<MaterialIndex> DeformableBody::materials() const {
   if (element_material.empty()) return {material};
   std::vector<MaterialIndex> all = element_material;
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }

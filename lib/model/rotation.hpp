@@ -1,8 +1,6 @@
 // Rotation of a vector.
 #pragma once
 
-#include <cmath>
-
 #include "geometry/polygon/point.hpp"
 #include "lib/execution/elementary.hpp"
 

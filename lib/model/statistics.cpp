@@ -1,7 +1,6 @@
 #include "lib/model/statistics.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/polygon/ring_moments.hpp"
 #include "lib/mesh/measure.hpp"

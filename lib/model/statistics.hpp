@@ -20,8 +20,7 @@ struct BodyStatistics {
   /// Mean stress, Pa, tension positive. Of a rigid body 1/V SUM f (x) l over its contacts, with the
   /// force f on it and the arm l of the contact from its mass centre, the symmetric part (A. E. H.
   /// Love; J. Christoffersen, M. M. Mehrabadi, S. Nemat-Nasser, J. Appl. Mech. 48 (1981) 339-344).
-  /// Of a body with a mesh the mean Cauchy stress of its
-  /// elements, weighted with their areas.
+  /// Of a body with a mesh the mean Cauchy stress of its elements, weighted with their areas.
   CauchyStress stress;
 };
 

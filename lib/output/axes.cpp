@@ -12,6 +12,7 @@ namespace {
 constexpr double kTick = 4;      // length of a tick, points
 constexpr double kNumbers = 10;  // font size of numbers, points
 constexpr double kNames = 11;    // font size of names, points
+const Pen kFrame{{.25, .25, .25}, .8};
 
 std::string superscript(int number) {
   static const char* const digits[]{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -110,17 +111,12 @@ std::vector<Vec2> Axes::operator()(std::vector<Vec2> data) const {
 }
 
 void Axes::draw(Canvas& canvas, bool below, bool left) const {
-  const Pen pen{{.25, .25, .25}, .8};
-  canvas.stroke({{frame_.x0, frame_.y0},
-                 {frame_.x1, frame_.y0},
-                 {frame_.x1, frame_.y1},
-                 {frame_.x0, frame_.y1}},
-                true, pen);
+  canvas.stroke(box_ring(frame_), true, kFrame);
   const Ticks x = make_ticks(x_, window_.x0, window_.x1,
                              std::max(2, static_cast<int>((frame_.x1 - frame_.x0) / 60)));
   for (size_t i = 0; i < x.places.size(); ++i) {
     const double at = (*this)({x.places[i], window_.y0}).x();
-    canvas.stroke({{at, frame_.y1}, {at, frame_.y1 + kTick}}, false, pen);
+    canvas.stroke({{at, frame_.y1}, {at, frame_.y1 + kTick}}, false, kFrame);
     if (below) canvas.text({at, frame_.y1 + 12}, x.numbers[i], {kNumbers, Align::centre});
   }
   if (below) {
@@ -131,7 +127,7 @@ void Axes::draw(Canvas& canvas, bool below, bool left) const {
   double widest = 0;
   for (size_t i = 0; i < y.places.size(); ++i) {
     const double at = (*this)({window_.x0, y.places[i]}).y();
-    canvas.stroke({{frame_.x0 - kTick, at}, {frame_.x0, at}}, false, pen);
+    canvas.stroke({{frame_.x0 - kTick, at}, {frame_.x0, at}}, false, kFrame);
     if (left) canvas.text({frame_.x0 - 7, at}, y.numbers[i], {kNumbers, Align::right});
     widest = std::max(widest, canvas.text_width(y.numbers[i], kNumbers));
   }
@@ -142,21 +138,18 @@ void Axes::draw(Canvas& canvas, bool below, bool left) const {
 
 void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,
                        bool values_below, bool values_above) {
-  const Pen pen{{.25, .25, .25}, .8};
   constexpr int kColours = 256;
   std::vector<Colour> colours;
   colours.reserve(kColours);
   for (int i = 0; i < kColours; ++i) colours.push_back(viridis((kColours - .5 - i) / kColours));
   canvas.image(frame, 1, kColours, colours);
-  canvas.stroke(
-      {{frame.x0, frame.y0}, {frame.x1, frame.y0}, {frame.x1, frame.y1}, {frame.x0, frame.y1}},
-      true, pen);
+  canvas.stroke(box_ring(frame), true, kFrame);
   const double height = (frame.x1 - frame.x0) * .8;
   const auto point = [&](double from, double to, const Colour& colour) {
     const std::vector<Vec2> ring{
         {frame.x0, from}, {frame.x1, from}, {(frame.x0 + frame.x1) / 2, to}};
     canvas.fill(ring, colour);
-    canvas.stroke(ring, true, pen);
+    canvas.stroke(ring, true, kFrame);
   };
   if (values_below) point(frame.y1, frame.y1 + height, viridis(0));
   if (values_above) point(frame.y0, frame.y0 - height, viridis(1));
@@ -164,7 +157,7 @@ void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, doubl
       make_ticks(axis, low, high, std::max(2, static_cast<int>((frame.y1 - frame.y0) / 25)));
   for (size_t i = 0; i < ticks.places.size(); ++i) {
     const double at = frame.y1 - (ticks.places[i] - low) / (high - low) * (frame.y1 - frame.y0);
-    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, pen);
+    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, kFrame);
     canvas.text({frame.x1 + 7, at}, ticks.numbers[i], {kNumbers});
   }
   canvas.text({frame.x0, frame.y0 - height - 10}, ticks.name, {kNames});
@@ -172,7 +165,6 @@ void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, doubl
 
 void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>& bounds,
                      const std::vector<Colour>& colours, size_t stride, const std::string& name) {
-  const Pen pen{{.25, .25, .25}, .8};
   const double low = bounds.front();
   const double high = bounds.back();
   const auto place = [&](double value) {
@@ -185,12 +177,10 @@ void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>
         {{frame.x0, bottom}, {frame.x1, bottom}, {frame.x1, frame.y0}, {frame.x0, frame.y0}},
         colours[i]);
   }
-  canvas.stroke(
-      {{frame.x0, frame.y0}, {frame.x1, frame.y0}, {frame.x1, frame.y1}, {frame.x0, frame.y1}},
-      true, pen);
+  canvas.stroke(box_ring(frame), true, kFrame);
   for (size_t i = 0; i < bounds.size(); i += stride) {
     const double at = place(bounds[i]);
-    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, pen);
+    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, kFrame);
     canvas.text({frame.x1 + 7, at}, fmt::format("{:.6g}", bounds[i]), {kNumbers});
   }
   canvas.text({(frame.x0 + frame.x1) / 2, frame.y0 - 12}, name, {kNames, Align::centre});

@@ -83,7 +83,6 @@ class BodyGrid {
   BodyGrid(const Model& model, const FrameContents& frame,
            const std::map<RigidIndex, Cells>& rigid_cells)
       : model_(model), frame_(frame), rigid_cells_(rigid_cells) {
-    points_->SetDataTypeToDouble();
     for (const BodyQuantity& quantity : kBodyQuantities) {
       if (quantity.in_frames()) quantities_.push_back({&quantity, array_of(quantity), {}});
     }
@@ -101,9 +100,7 @@ class BodyGrid {
   }
 
   vtkNew<vtkUnstructuredGrid> grid() {
-    vtkNew<vtkUnstructuredGrid> grid;
-    grid->SetPoints(points_);
-    grid->SetCells(VTK_POLYGON, cells_);
+    vtkNew<vtkUnstructuredGrid> grid = grid_of(points_, VTK_POLYGON, cells_);
     if (!model_.deformables.empty()) {
       of_cells_.add_to(grid->GetCellData());
       of_points_.add_to(grid->GetPointData());
@@ -231,7 +228,7 @@ class BodyGrid {
   const Model& model_;
   const FrameContents& frame_;
   const std::map<RigidIndex, Cells>& rigid_cells_;
-  vtkNew<vtkPoints> points_;
+  vtkNew<vtkPoints> points_ = double_points();
   vtkNew<vtkCellArray> cells_;
   vtkNew<vtkIntArray> body_ = integers("body");
   vtkNew<vtkIntArray> part_ = integers("part");
@@ -252,9 +249,7 @@ vtkNew<vtkUnstructuredGrid> body_grid(const Model& model, const FrameContents& f
 
 vtkNew<vtkUnstructuredGrid> outline_grid(const Model& model, const State& state,
                                          const std::vector<Cells>& loops) {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> of_cells = integers("body");
   const auto add = [&](BodyIndex body, size_t corners, const auto& place_of) {
@@ -285,10 +280,7 @@ vtkNew<vtkUnstructuredGrid> outline_grid(const Model& model, const State& state,
       });
     }
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_LINE, cells);
-  grid->GetCellData()->AddArray(of_cells);
-  return grid;
+  return grid_of(points, VTK_LINE, cells, {of_cells});
 }
 
 }  // namespace apothem

@@ -79,6 +79,10 @@ struct Canvas::Surface {
   cairo_t* cairo;
 };
 
+std::vector<Vec2> box_ring(const Box& box) {
+  return {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
+}
+
 std::vector<Vec2> circle_ring(const Vec2& centre, double radius) {
   constexpr int kCorners = 180;
   std::vector<Vec2> ring;

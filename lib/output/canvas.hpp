@@ -32,6 +32,9 @@ Colour viridis(double share);
 /// repeat, lighter.
 Colour okabe_ito(size_t index);
 
+/// The corners of a box.
+std::vector<Vec2> box_ring(const Box& box);
+
 /// A circle of the data as a ring of corners, which is drawn as an ellipse if axes are stretched.
 std::vector<Vec2> circle_ring(const Vec2& centre, double radius);
 

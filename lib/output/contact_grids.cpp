@@ -33,9 +33,7 @@ constexpr std::array kPatchQuantities{
 
 vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
                                             const std::vector<ContactRecord>& contacts) {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> a = integers("body_a");
   vtkNew<vtkIntArray> b = integers("body_b");
@@ -46,8 +44,7 @@ vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
     a->InsertNextValue(contact.a);
     b->InsertNextValue(contact.b);
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_VERTEX, cells);
+  vtkNew<vtkUnstructuredGrid> grid = grid_of(points, VTK_VERTEX, cells);
   grid->GetPointData()->AddArray(a);
   grid->GetPointData()->AddArray(b);
   for (const PatchQuantity& quantity : kPatchQuantities) {
@@ -67,9 +64,7 @@ vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
 
 vtkNew<vtkUnstructuredGrid> contact_surfaces(const Model& model,
                                              const std::vector<SurfaceRecord>& surfaces) {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> body = integers("body");
   vtkNew<vtkDoubleArray> pressure = doubles("contact_pressure", 1);
@@ -84,12 +79,7 @@ vtkNew<vtkUnstructuredGrid> contact_surfaces(const Model& model,
     pressure->InsertNextValue(surface.pressure);
     traction->InsertNextValue(surface.traction);
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_LINE, cells);
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{body, pressure, traction}) {
-    grid->GetCellData()->AddArray(array);
-  }
-  return grid;
+  return grid_of(points, VTK_LINE, cells, {body, pressure, traction});
 }
 
 }  // namespace apothem

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "lib/output/files.hpp"
+#include "lib/text/csv.hpp"
 
 namespace apothem {
 namespace {
@@ -38,7 +39,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string table_with_bars(const CurvePanel& panel, const Curve& curve) {
-  std::string text = fmt::format("{},{},low,high\n", panel.x_label, panel.y_label);
+  std::string text = csv_row({panel.x_label, panel.y_label, "low", "high"});
   for (size_t i = 0; i < curve.x.size(); ++i) {
     text += fmt::format("{},{},{},{}\n", curve.x[i], curve.y[i], curve.low[i], curve.high[i]);
   }
@@ -47,7 +48,7 @@ std::string table_with_bars(const CurvePanel& panel, const Curve& curve) {
 
 std::string table(const CurvePanel& panel, const Curve& curve) {
   if (curve.style == CurveStyle::error_bars) return table_with_bars(panel, curve);
-  std::string text = fmt::format("{},{}\n", panel.x_label, panel.y_label);
+  std::string text = csv_row({panel.x_label, panel.y_label});
   for (size_t i = 0; i < curve.x.size(); ++i) {
     fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{}\n"), curve.x[i], curve.y[i]);
   }
@@ -98,8 +99,8 @@ std::string style(const Curve& curve) {
 }
 
 bool has_bars(const CurvePanel& panel) {
-  return std::any_of(panel.curves.begin(), panel.curves.end(),
-                     [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
+  return std::ranges::any_of(
+      panel.curves, [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
 }
 
 // Names at the places 1, 2, ... of the x axis, or its numbers. Names that do not fit beside each

@@ -50,45 +50,36 @@ void add(FieldSample& sum, const Frame& frame, int element, double weight) {
 }
 
 std::vector<FieldQuantity> all_quantities() {
+  using enum FieldKind;
+  using S = const FieldSample&;
   std::vector<FieldQuantity> all{
-      FieldQuantity{"speed", "speed", "|v|", "m/s", FieldKind::node,
-                    [](const FieldSample& s) { return s.velocity.norm(); }},
-      FieldQuantity{"vx", "velocity along x", "vx", "m/s", FieldKind::node,
-                    [](const FieldSample& s) { return s.velocity.x(); }},
-      FieldQuantity{"vy", "velocity along y", "vy", "m/s", FieldKind::node,
-                    [](const FieldSample& s) { return s.velocity.y(); }},
-      FieldQuantity{"u", "displacement", "|u|", "m", FieldKind::node,
-                    [](const FieldSample& s) { return s.displacement.norm(); }},
-      FieldQuantity{"ux", "displacement along x", "ux", "m", FieldKind::node,
-                    [](const FieldSample& s) { return s.displacement.x(); }},
-      FieldQuantity{"uy", "displacement along y", "uy", "m", FieldKind::node,
-                    [](const FieldSample& s) { return s.displacement.y(); }}};
+      {"speed", "speed", "|v|", "m/s", node, [](S s) { return s.velocity.norm(); }},
+      {"vx", "velocity along x", "vx", "m/s", node, [](S s) { return s.velocity.x(); }},
+      {"vy", "velocity along y", "vy", "m/s", node, [](S s) { return s.velocity.y(); }},
+      {"u", "displacement", "|u|", "m", node, [](S s) { return s.displacement.norm(); }},
+      {"ux", "displacement along x", "ux", "m", node, [](S s) { return s.displacement.x(); }},
+      {"uy", "displacement along y", "uy", "m", node, [](S s) { return s.displacement.y(); }}};
   for (size_t i = 0; i < kBodyQuantities.size(); ++i) {
     const BodyQuantity& q = kBodyQuantities[i];
     if (!q.in_pictures()) continue;
     const char* const unit = q.kind == BodyQuantity::Kind::count ? "" : q.unit;
-    all.push_back({q.name, q.meaning, q.symbol, unit, FieldKind::body,
-                   [i](const FieldSample& s) { return s.body->values[i][0]; }});
+    all.push_back(
+        {q.name, q.meaning, q.symbol, unit, body, [i](S s) { return s.body->values[i][0]; }});
   }
   const std::vector<FieldQuantity> others{
-      FieldQuantity{"material", "material", "", "", FieldKind::category,
-                    [](const FieldSample& s) { return 1. * s.material; }},
-      FieldQuantity{"pressure", "pressure, −(σ₁ + σ₂)/2", "p", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return -(s.stress.xx + s.stress.yy) / 2; }},
-      FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
-      FieldQuantity{"s2", "minor principal stress", "σ₂", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return principal_stresses(s.stress)[1]; }},
-      FieldQuantity{"sxx", "stress xx", "σxx", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return s.stress.xx; }},
-      FieldQuantity{"syy", "stress yy", "σyy", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return s.stress.yy; }},
-      FieldQuantity{"sxy", "stress xy", "σxy", "Pa", FieldKind::stress,
-                    [](const FieldSample& s) { return s.stress.xy; }},
-      FieldQuantity{"szz", "stress zz", "σzz", "Pa", FieldKind::stress_of_elements,
-                    [](const FieldSample& s) { return s.stress.zz; }},
-      FieldQuantity{"von_mises", "von Mises stress", "σᵥ", "Pa", FieldKind::stress_of_elements,
-                    [](const FieldSample& s) { return von_mises(s.stress); }}};
+      {"material", "material", "", "", category, [](S s) { return 1. * s.material; }},
+      {"pressure", "pressure, −(σ₁ + σ₂)/2", "p", "Pa", stress,
+       [](S s) { return -(s.stress.xx + s.stress.yy) / 2; }},
+      {"s1", "major principal stress", "σ₁", "Pa", stress,
+       [](S s) { return principal_stresses(s.stress)[0]; }},
+      {"s2", "minor principal stress", "σ₂", "Pa", stress,
+       [](S s) { return principal_stresses(s.stress)[1]; }},
+      {"sxx", "stress xx", "σxx", "Pa", stress, [](S s) { return s.stress.xx; }},
+      {"syy", "stress yy", "σyy", "Pa", stress, [](S s) { return s.stress.yy; }},
+      {"sxy", "stress xy", "σxy", "Pa", stress, [](S s) { return s.stress.xy; }},
+      {"szz", "stress zz", "σzz", "Pa", stress_of_elements, [](S s) { return s.stress.zz; }},
+      {"von_mises", "von Mises stress", "σᵥ", "Pa", stress_of_elements,
+       [](S s) { return von_mises(s.stress); }}};
   all.insert(all.end(), others.begin(), others.end());
   return all;
 }

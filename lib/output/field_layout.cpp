@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -31,9 +30,7 @@ struct Spread {
 };
 
 bool is_visible(const Field& field, int element, const Box& window) {
-  Box box;
-  for (const int node : field.mesh.element(element)) box.include(field.mesh.nodes[node]);
-  return !apart(box, window);
+  return !apart(box_of(field.mesh.places(field.mesh.element(element))), window);
 }
 
 // The range of the values of a field that are visible inside a window.
@@ -180,11 +177,11 @@ PanelLayout lay_out(const FieldPanel& panel, size_t at_once, const Canvas& ruler
     if (text > layout.wide) layout.label = kTwoLabels;
   }
   // Ranges that would run into those of the next frames are left out; the colours have a scale.
-  const bool fit = std::all_of(
-      layout.ranges.begin(), layout.ranges.end(),
-      [&](const std::string& range) { return ruler.text_width(range, kLabelFont) <= layout.wide; });
+  const bool fit = std::ranges::all_of(layout.ranges, [&](const std::string& range) {
+    return ruler.text_width(range, kLabelFont) <= layout.wide;
+  });
   if (!fit) {
-    std::fill(layout.ranges.begin(), layout.ranges.end(), "");
+    std::ranges::fill(layout.ranges, "");
     layout.label = kLabel;
   }
   choose_colours(panel, all, layout);

@@ -68,8 +68,8 @@ void draw_roses(Canvas& canvas, const Axes& axes, const std::vector<Rose>& roses
     const std::vector<Vec2> ring = axes(rose.line);
     canvas.fill(ring, {kRose.red, kRose.green, kRose.blue, .45});
     canvas.stroke(ring, true, {kRose, 1});
-    const size_t longest = static_cast<size_t>(
-        std::max_element(rose.frequency.begin(), rose.frequency.end()) - rose.frequency.begin());
+    const size_t longest =
+        static_cast<size_t>(std::ranges::max_element(rose.frequency) - rose.frequency.begin());
     if (!(rose.frequency[longest] > 0)) continue;
     const double radius =
         (axes(rose.line[longest]) - axes(middle)).norm() / rose.frequency[longest];

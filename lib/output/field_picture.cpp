@@ -50,8 +50,7 @@ void draw_legend(Canvas& canvas, const FieldPanel& panel, const PanelLayout& lay
                   {kLabelFont});
       return;
     }
-    const std::vector<Vec2> box{
-        {x, y}, {x + kBarWidth, y}, {x + kBarWidth, y + kBarWidth}, {x, y + kBarWidth}};
+    const std::vector<Vec2> box = box_ring({x, y, x + kBarWidth, y + kBarWidth});
     canvas.fill(box, okabe_ito(category));
     canvas.stroke(box, true, {{.15, .15, .15}, .7});
     canvas.text({x + kBarWidth + 7, y + kBarWidth / 2}, panel.fields[0].field.names[category],

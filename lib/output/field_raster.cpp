@@ -49,7 +49,7 @@ class Raster {
         if (a.y() > b.y()) std::swap(a, b);
         crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
       }
-      std::sort(crossings.begin(), crossings.end());
+      std::ranges::sort(crossings);
       for (size_t i = 0; i + 1 < crossings.size(); i += 2) {
         const int end = first_right_of(crossings[i + 1]);
         for (int column = first_right_of(crossings[i]); column < end; ++column) f(column, row);
@@ -62,12 +62,6 @@ class Raster {
   int width_, height_;
 };
 
-std::vector<Vec2> ring_of(const Mesh& mesh, int element) {
-  std::vector<Vec2> ring;
-  for (const int node : mesh.element(element)) ring.push_back(mesh.nodes[node]);
-  return ring;
-}
-
 }  // namespace
 
 std::vector<Colour> paint(const Field& field, const Box& window,
@@ -78,8 +72,8 @@ std::vector<Colour> paint(const Field& field, const Box& window,
   std::vector<double> crossings, weights;
   std::vector<Vec2> relative;
   for (int e = 0; e < field.mesh.element_count(); ++e) {
-    const std::vector<Vec2> ring = ring_of(field.mesh, e);
     const std::span<const int> nodes = field.mesh.element(e);
+    const std::vector<Vec2> ring = field.mesh.places(nodes);
     const bool varies = field.nodal && !field.blank[e];
     const Colour even = varies ? kEmpty : field.blank[e] ? kGrey : colour(field.values[e]);
     weights.resize(ring.size());

@@ -53,7 +53,6 @@ RoseCounts rose_of(const Region& region, const std::vector<ContactRecord>& conta
 }  // namespace
 
 vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents& frame) {
-  vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> chain = integers("chain"), a = integers("body_a"), b = integers("body_b");
@@ -84,17 +83,10 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
     if (to) add_line(middle, add_point(*to));
     ++number;
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_LINE, cells);
-  for (vtkDataArray* array :
-       std::initializer_list<vtkDataArray*>{chain, a, b, normal, tangential}) {
-    grid->GetCellData()->AddArray(array);
-  }
-  return grid;
+  return grid_of(points, VTK_LINE, cells, {chain, a, b, normal, tangential});
 }
 
 vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame) {
-  vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> of_region = integers("region");
@@ -123,9 +115,7 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
       of_region->InsertNextValue(static_cast<int>(r));
     }
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_LINE, cells);
-  grid->GetCellData()->AddArray(of_region);
+  vtkNew<vtkUnstructuredGrid> grid = grid_of(points, VTK_LINE, cells, {of_region});
   grid->GetPointData()->AddArray(frequency);
   grid->GetPointData()->AddArray(force);
   return grid;

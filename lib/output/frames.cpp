@@ -16,6 +16,7 @@
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/force_lines.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -97,11 +98,7 @@ void work_on(const Threads& threads, size_t count, const Write& write) {
   }
 }
 
-std::string csv_text(const std::string& name) {
-  std::string result = "\"";
-  for (const char c : name) result.append(c == '"' ? 2 : 1, c);
-  return result + '"';
-}
+std::string csv_text(const std::string& name) { return "\"" + replaced(name, "\"", "\"\"") + "\""; }
 
 // The names of the bodies and materials that frames number. Frames hold numbers only, because not
 // all readers of VTK files read text in them.

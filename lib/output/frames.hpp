@@ -1,6 +1,6 @@
-// Writes the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
-// frame for the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact
-// patches, chains.pvd for the lines along which they carry force, roses.pvd for the directions of
+// Writes the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per frame for
+// the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact patches,
+// chains.pvd for the lines along which they carry force, roses.pvd for the directions of
 // contacts in regions, and surfaces.pvd for the boundaries of bodies that are in contact with
 // meshes. names.csv has the names of what frames number. Bodies that are not there are left out.
 // VTK, ParaView, PyVista and meshio read all of these files.
@@ -53,8 +53,8 @@ class FrameWriter {
               int threads = 1, FileList* list = nullptr);
 
   /// Writes the next frame and then the .pvd files, so that every file that these list is complete.
-  /// Threads make files of the frame at the same time.
-  /// Throws SystemFailure; the earlier frames are then intact.
+  /// Threads make files of the frame at the same time. Throws SystemFailure; the earlier frames are
+  /// then intact.
   void write(const FrameContents& frame);
 
   /// Sees to it that all frames outlast a machine that stops. Throws SystemFailure.

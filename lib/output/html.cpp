@@ -1,28 +1,13 @@
 #include "lib/output/html.hpp"
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 
 std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  std::string result = replaced(std::string(text), "&", "&amp;");  // first: the others hold one
+  result = replaced(replaced(std::move(result), "<", "&lt;"), ">", "&gt;");
+  return replaced(std::move(result), "\"", "&quot;");
 }
 
 std::string base64(std::string_view bytes) {

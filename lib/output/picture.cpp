@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "lib/output/axes.hpp"
 
 namespace apothem {

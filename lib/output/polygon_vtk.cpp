@@ -86,7 +86,6 @@ void write_polygon_vtk(const std::string& folder, const Polygon& polygon, const 
 }
 
 void write_mesh(const std::string& file, const PolygonMesh& mesh) {
-  vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points = double_points();
   for (const Vec2& p : mesh.points) points->InsertNextPoint(p.x(), p.y(), 0);
   vtkNew<vtkCellArray> cells;
@@ -105,12 +104,7 @@ void write_mesh(const std::string& file, const PolygonMesh& mesh) {
       for (const int corner : parts[k]) cells->InsertCellPoint(mesh.cells[i][corner]);
     }
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_POLYGON, cells);
-  grid->GetCellData()->AddArray(index);
-  grid->GetCellData()->AddArray(part);
-  grid->GetCellData()->AddArray(area);
-  write_file(file, xml(grid));
+  write_file(file, xml(grid_of(points, VTK_POLYGON, cells, {index, part, area})));
 }
 
 }  // namespace apothem

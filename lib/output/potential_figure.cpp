@@ -36,8 +36,8 @@ Ring above(const PotentialPiece& piece, double level, Ring& line) {
   Ring part = part_above(
       piece.ring, [&](const Vec2& p) { return piece.phi(p) - level; }, &line);
   const Vec2 along(-piece.gradient.y(), piece.gradient.x());
-  std::sort(line.begin(), line.end(),
-            [&](const Vec2& p, const Vec2& q) { return along.dot(p) < along.dot(q); });
+  std::ranges::sort(line,
+                    [&](const Vec2& p, const Vec2& q) { return along.dot(p) < along.dot(q); });
   return part;
 }
 

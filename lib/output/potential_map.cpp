@@ -154,18 +154,18 @@ PotentialMap potential_map(const Polygon& polygon, MapKind kind, const Potential
                                                                     : skeleton.roof_height;
   map.singular = singular_area(skeleton, map.reference);
   const auto place = [&](Vec2& p) { p += polygon.origin(); };
-  for (Ring& ring : map.singular->polygons) std::for_each(ring.begin(), ring.end(), place);
-  for (auto& ends : map.singular->segments) std::for_each(ends.begin(), ends.end(), place);
-  std::for_each(map.singular->points.begin(), map.singular->points.end(), place);
-  std::for_each(map.circle->centres.begin(), map.circle->centres.end(), place);
+  for (Ring& ring : map.singular->polygons) std::ranges::for_each(ring, place);
+  for (auto& ends : map.singular->segments) std::ranges::for_each(ends, place);
+  std::ranges::for_each(map.singular->points, place);
+  std::ranges::for_each(map.circle->centres, place);
   return map;
 }
 
 double phi_at(const PotentialMap& map, const Vec2& x) {
-  const auto nearest = std::min_element(map.pieces.begin(), map.pieces.end(),
-                                        [&](const PotentialPiece& a, const PotentialPiece& b) {
-                                          return outside_by(a, x) < outside_by(b, x);
-                                        });
+  const auto nearest =
+      std::ranges::min_element(map.pieces, [&](const PotentialPiece& a, const PotentialPiece& b) {
+        return outside_by(a, x) < outside_by(b, x);
+      });
   return std::min(1., nearest->phi(x));
 }
 

@@ -37,8 +37,8 @@ constexpr std::array kVerdictTexts{
     VerdictText{"contradicted", "contradicted"}, VerdictText{"not in the paper", "own"}};
 
 size_t missed(const ReportFigure& figure) {
-  return static_cast<size_t>(std::count_if(figure.numbers.begin(), figure.numbers.end(),
-                                           [](const ReportNumber& n) { return !n.met; }));
+  return static_cast<size_t>(
+      std::ranges::count_if(figure.numbers, [](const ReportNumber& n) { return !n.met; }));
 }
 
 // The verdict of this run: what a figure says of itself does not hold where numbers are missed.

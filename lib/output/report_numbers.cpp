@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "lib/output/html.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -35,20 +35,15 @@ constexpr std::array kGroups{GroupText{"Against the paper", "paper"},
                              GroupText{"Internal checks", "internal checks"}};
 
 const BasisText& text_of(const ReportNumber& number) {
-  return *std::find_if(kBasisTexts.begin(), kBasisTexts.end(),
-                       [&](const BasisText& t) { return t.basis == number.basis; });
+  return *std::ranges::find_if(kBasisTexts,
+                               [&](const BasisText& t) { return t.basis == number.basis; });
 }
 
 std::string two_digits(double x) { return x == 0 ? "0" : fmt::format("{:.1e}", x); }
 
 // m^2 as it is printed.
-std::string unit_in_print(std::string unit) {
-  for (const auto& [plain, printed] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
-    for (size_t at = unit.find(plain); at != std::string::npos; at = unit.find(plain)) {
-      unit.replace(at, 2, printed);
-    }
-  }
-  return unit;
+std::string unit_in_print(const std::string& unit) {
+  return replaced(replaced(unit, "^2", "²"), "^3", "³");
 }
 
 std::string row(const ReportNumber& n, bool with_scene) {
@@ -101,9 +96,8 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
   std::string text;
   for (size_t group = 0; group < kGroups.size(); ++group) {
     const auto is_here = [&](const ReportNumber& n) { return text_of(n).group == group; };
-    const bool with_scenes =
-        std::any_of(numbers.begin(), numbers.end(),
-                    [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
+    const bool with_scenes = std::ranges::any_of(
+        numbers, [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
     std::string rows;
     for (const ReportNumber& n : numbers) {
       if (is_here(n)) rows += row(n, with_scenes);

@@ -90,8 +90,7 @@ void read_stresses(const VtuFile& file, const std::vector<size_t>& cells, Frame&
 }  // namespace
 
 bool all_rigid(const Frame& frame) {
-  return std::none_of(frame.bodies.begin(), frame.bodies.end(),
-                      [](const FrameBody& body) { return body.meshed; });
+  return std::ranges::none_of(frame.bodies, [](const FrameBody& body) { return body.meshed; });
 }
 
 FrameNames read_names(const std::string& file) {

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "lib/output/field_picture.hpp"
@@ -23,8 +22,8 @@ struct RunPicture {
   /// Factor of all displacements and rotations since the start of the run.
   double deformation = 1;
   std::optional<Box> window = {};  ///< visible region, m; empty: all bodies
-  std::optional<Vec2> range =
-      {};  ///< ends of the colour scale, SI units; empty: all visible values
+  /// Ends of the colour scale, SI units; empty: all visible values.
+  std::optional<Vec2> range = {};
 };
 
 /// So many frames of a run, at equal intervals of time from the first to the last one; all of them

@@ -46,9 +46,8 @@ class Panels {
   /// `label`: of the curve in its panel.
   void add(size_t column, const std::string& key, const std::string& label) {
     const std::string& name = table_.names[column];
-    const bool asked = std::any_of(wanted_.begin(), wanted_.end(), [&](const std::string& w) {
-      return w == name || w == ColumnName(name).quantity;
-    });
+    const bool asked = std::ranges::any_of(
+        wanted_, [&](const std::string& w) { return w == name || w == ColumnName(name).quantity; });
     candidates_.push_back(name);
     if (asked) found_.insert(name), found_.insert(ColumnName(name).quantity);
     if (wanted_.empty() ? !changes(column) : !asked) return;
@@ -101,7 +100,7 @@ class Panels {
 };
 
 std::string in_words(std::string column) {
-  std::replace(column.begin(), column.end(), '_', ' ');
+  std::ranges::replace(column, '_', ' ');
   return column;
 }
 

@@ -40,6 +40,16 @@ inline vtkNew<vtkIntArray> integers(const char* name) {
   return array;
 }
 
+/// A grid of cells of one kind. The arrays have a value for each cell.
+inline vtkNew<vtkUnstructuredGrid> grid_of(vtkPoints* points, int kind, vtkCellArray* cells,
+                                           std::initializer_list<vtkDataArray*> of_cells = {}) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(kind, cells);
+  for (vtkDataArray* array : of_cells) grid->GetCellData()->AddArray(array);
+  return grid;
+}
+
 /// Has VTK print nothing: what has failed is said by an exception.
 inline void keep_vtk_silent() { vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF); }
 

@@ -11,6 +11,7 @@
 #include "lib/output/axes.hpp"
 #include "lib/output/canvas.hpp"
 #include "lib/player/data_block.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -113,7 +114,7 @@ class Builder {
     for (const Shapes::Body& body : run_.shapes.bodies) {
       if (body.known) sizes.push_back(diameter(body));
     }
-    std::sort(sizes.begin(), sizes.end());
+    std::ranges::sort(sizes);
     const Vec2 half = (window_.high - window_.low) / 2, middle = window_.middle();
     description["times"] = run_.times;
     description["bodies"] = run_.bodies;
@@ -261,7 +262,7 @@ class Builder {
     block.add("chain_y", y);
     block.add("chain_force", force);
     std::vector<double> sorted = chains.force;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     const double scale = sorted.empty() ? 0 : sorted[sorted.size() - 1 - sorted.size() / 40];
     description["force_scale"] = scale > 0 ? scale : 1;
     description["force_most"] = largest;
@@ -299,10 +300,7 @@ class Builder {
 
 // JSON that no browser takes for the end of a script.
 std::string safe(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string result;
-  for (const char c : text) c == '<' ? result += "\\u003c" : result += c;
-  return result;
+  return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }
 
 }  // namespace

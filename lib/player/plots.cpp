@@ -42,7 +42,7 @@ double offset_of(const std::vector<double>& values) {
 }
 
 bool is_zero(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+  return std::ranges::all_of(values, [](double v) { return v == 0; });
 }
 
 // A file of histories and where its columns are among those of the plots.

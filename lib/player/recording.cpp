@@ -134,7 +134,7 @@ class Recorder {
 
   void add_chains(const Frame& frame, size_t k) {
     std::vector<ForceChain> chains = run_.chains(k);
-    std::stable_sort(chains.begin(), chains.end(), [](const ForceChain& c, const ForceChain& d) {
+    std::ranges::stable_sort(chains, [](const ForceChain& c, const ForceChain& d) {
       return std::pair(c.body_a, c.body_b) < std::pair(d.body_a, d.body_b);
     });
     RecordedChains& out = out_.chains;
@@ -173,7 +173,7 @@ void choose_scale(RecordedQuantity& quantity) {
     if (v != kNoValue) values.push_back(v);
   }
   if (values.empty()) return;
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const double least = values.front(), most = values.back();
   const double low = values[values.size() / 500],
                high = values[values.size() - 1 - values.size() / 500];

@@ -1,7 +1,6 @@
 #include "lib/player/shapes.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/ring_moments.hpp"

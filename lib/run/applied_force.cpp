@@ -11,7 +11,7 @@ AppliedForce::AppliedForce(std::string name, const DegreesOfFreedom& dofs, Funct
       force_(dofs.layout().size()) {}
 
 void AppliedForce::find(const State& state) {
-  std::fill(force_.begin(), force_.end(), 0.);
+  std::ranges::fill(force_, 0.);
   function_(state, force_);
 }
 

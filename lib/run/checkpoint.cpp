@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -27,7 +28,7 @@ void require_fitting(const Simulation& simulation, const RunProgress& progress) 
   const auto fits = [&](const LoadStep& s) {
     return s.off.size() == bodies && s.worst >= 0 && static_cast<size_t>(s.worst) < bodies;
   };
-  if (!std::all_of(progress.load_steps.begin(), progress.load_steps.end(), fits)) {
+  if (!std::ranges::all_of(progress.load_steps, fits)) {
     throw ArchiveMismatch("load_steps");
   }
   if (!(simulation.step_size() > 0)) throw ArchiveMismatch("step_size");
@@ -46,7 +47,7 @@ void with_state(const std::string& name, const Load& load) {
     const std::string folder = std::filesystem::path(name).parent_path().string();
     const bool ended = name == state_file(folder, StateFile::checkpoint) &&
                        file_exists(state_file(folder, StateFile::final));
-    throw SceneError(name, 0, "",
+    throw SceneError(name,
                      ended ? "the run has ended, so there is no checkpoint to resume from; give "
                              "--overwrite in place of --resume to run it anew"
                            : "there is no checkpoint to resume from; give --overwrite in place of "
@@ -57,24 +58,17 @@ void with_state(const std::string& name, const Load& load) {
     JsonLoader archive(json);
     load(archive);
   } catch (const nlohmann::json::exception& error) {
-    throw SceneError(name, 0, "", std::string("is not a checkpoint: ") + error.what());
+    throw SceneError(name, std::string("is not a checkpoint: ") + error.what());
   } catch (const ArchiveMismatch&) {
-    throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
+    throw SceneError(name, "is damaged: its state does not fit the scene; run it anew");
   }
 }
 
 }  // namespace
 
 std::string state_file(const std::string& folder, StateFile kind) {
-  switch (kind) {
-    case StateFile::checkpoint:
-      return folder + "/checkpoint.json";
-    case StateFile::previous:
-      return folder + "/checkpoint.previous.json";
-    case StateFile::final:
-      break;
-  }
-  return folder + "/final.json";
+  constexpr std::array kNames{"checkpoint.json", "checkpoint.previous.json", "final.json"};
+  return folder + "/" + kNames[static_cast<size_t>(kind)];
 }
 
 bool has_checkpoint(const std::string& folder) {
@@ -157,13 +151,13 @@ void read_state(const std::string& file, const std::string& scene_hash, Simulati
     std::string hash, potentials;
     archive("scene_hash", hash);
     if (hash != scene_hash) {
-      throw SceneError(file, 0, "",
+      throw SceneError(file,
                        "belongs to another scene, or the scene or its settings have been changed; "
                        "run it anew");
     }
     archive("potentials", potentials);
     if (potentials != potentials_hash(simulation.model())) {
-      throw SceneError(file, 0, "",
+      throw SceneError(file,
                        "was written with other potentials of these polygons: their straight "
                        "skeletons were constructed by another version of apothem-skeleton; go on "
                        "with the version that began the run, or run it anew");
@@ -185,7 +179,7 @@ std::string bad_line(const std::string& file, std::int64_t size) {
     const auto odd = [&](unsigned char c) {
       return std::iscntrl(c) != 0 || (number > 1 && std::isalpha(c) != 0 && c != 'e');
     };
-    if (line.empty() || std::any_of(line.begin(), line.end(), odd)) {
+    if (line.empty() || std::ranges::any_of(line, odd)) {
       return fmt::format(", first seen in line {}", number);
     }
   }
@@ -197,7 +191,7 @@ std::string bad_line(const std::string& file, std::int64_t size) {
 HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress) {
   HistoryWriter::Parts parts;
   if (progress.histories.size() != parts.size()) {
-    throw SceneError(folder, 0, "", "holds a checkpoint of a run without histories; run it anew");
+    throw SceneError(folder, "holds a checkpoint of a run without histories; run it anew");
   }
   for (size_t i = 0; i < parts.size(); ++i) {
     const HistoryPart& kept = progress.histories[i];
@@ -205,7 +199,7 @@ HistoryWriter::Parts required_histories(const std::string& folder, const RunProg
     constexpr const char* kRemedy = "put the file back as it was, or run anew with --overwrite";
     std::error_code error;
     const auto fail = [&](const std::string& what) {
-      throw SceneError(file, 0, "", what + "; " + kRemedy);
+      throw SceneError(file, what + "; " + kRemedy);
     };
     if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, error))) {
       fail("is missing, so that the run cannot go on from its checkpoint");
@@ -228,7 +222,7 @@ void refuse_other_columns(const std::string& folder, const std::string& header) 
   std::string first;
   std::ifstream stream(file, std::ios::binary);
   if (std::getline(stream, first); first + '\n' != header) {
-    throw SceneError(file, 0, "",
+    throw SceneError(file,
                      "has other columns than this version writes; go on with the version that "
                      "began the run, or run it anew with --overwrite");
   }

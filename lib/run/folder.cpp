@@ -76,7 +76,7 @@ std::set<std::string> own_files(const std::string& folder, const FileList& list,
                                   : std::set(list.names().begin(), list.names().end());
   std::set<std::string> own;
   for (const std::string& name : all) {
-    const bool result = std::find(results.begin(), results.end(), name) != results.end();
+    const bool result = std::ranges::find(results, name) != results.end();
     if (result || name == "picture.png" || is_frame_file(name)) own.insert(name);
   }
   return own;
@@ -87,7 +87,7 @@ void refuse_link(const std::string& folder) {
   std::error_code error;
   if (!fs::is_symlink(frames, error)) return;
   throw SceneError(
-      frames.string(), 0, "",
+      frames.string(),
       "is a link, which is not followed out of the folder of results; take it away, or "
       "choose another folder");
 }
@@ -96,7 +96,7 @@ void refuse_link(const std::string& folder) {
 void refuse_others(const std::string& folder, const Names& results,
                    const std::set<std::string>& own) {
   const auto refuse = [&](const std::string& name) {
-    throw SceneError(in(folder, name), 0, "",
+    throw SceneError(in(folder, name),
                      "is in the way: the run would write a file of this name, and this one is not "
                      "of an earlier run; move it, or choose another folder");
   };
@@ -109,7 +109,7 @@ void refuse_others(const std::string& folder, const Names& results,
     const std::string name = "frames/" + entry.path().filename().string();
     if (is_frame_file(name) && own.count(name) == 0) frames.push_back(name);
   }
-  if (!frames.empty()) refuse(*std::min_element(frames.begin(), frames.end()));
+  if (!frames.empty()) refuse(*std::ranges::min_element(frames));
 }
 
 void refuse_inputs(const std::string& folder, const Names& files, const Names& inputs) {
@@ -118,7 +118,7 @@ void refuse_inputs(const std::string& folder, const Names& files, const Names& i
     for (const std::string& input : inputs) {
       std::error_code error;
       if (!is_there(file) || !fs::equivalent(file, input, error) || error) continue;
-      throw SceneError(file, 0, "",
+      throw SceneError(file,
                        "is read by this run, which would replace it; choose another folder for the "
                        "results");
     }
@@ -179,11 +179,11 @@ void lock_folder(FileList& list, const std::string& folder) {
   if (list.lock()) {
     if (!list.is_other_file()) return;
     throw SceneError(
-        folder + "/" + FileList::kName, 0, "",
+        folder + "/" + FileList::kName,
         "is in the way: it is no list of the files of a run, which has this name; move "
         "it, or choose another folder");
   }
-  throw SceneError(folder, 0, "",
+  throw SceneError(folder,
                    "is in use: another run is writing its results there; wait until it has ended, "
                    "or choose another folder");
 }
@@ -199,7 +199,7 @@ void prepare_folder(const std::string& folder, const FolderPlan& plan, FileList&
   const auto result = std::ranges::find_first_of(results, old);
   if (result != results.end() && !plan.overwrite) {
     throw SceneError(
-        folder, 0, "",
+        folder,
         fmt::format("already holds results ({}); {}give --overwrite to replace them (in Python: "
                     "overwrite=True), or choose another folder",
                     *result, has_checkpoint(folder) ? "--resume continues them, " : ""));

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lib/output/files.hpp"
-#include "lib/run/checkpoint.hpp"
 #include "lib/run/json_archive.hpp"
 #include "lib/run/sealed_file.hpp"
 
@@ -35,21 +34,21 @@ OtherRun::OtherRun(const std::string& folder, std::optional<double> time) {
   std::string file = state_file(folder, StateFile::final);
   if (!file_exists(file)) file = state_file(folder, StateFile::checkpoint);
   if (!file_exists(file)) {
-    throw SceneError(folder, 0, "",
+    throw SceneError(folder,
                      "holds no state of a run, neither final.json nor checkpoint.json; give the "
                      "folder of a run that is done or was stopped");
   }
   try {
     load(file);
   } catch (const nlohmann::json::exception& bad) {
-    throw SceneError(file, 0, "", std::string("is not the state of a run: ") + bad.what());
+    throw SceneError(file, std::string("is not the state of a run: ") + bad.what());
   } catch (const ArchiveMismatch& bad) {
-    throw SceneError(file, 0, "", std::string("is damaged: ") + bad.what());
+    throw SceneError(file, std::string("is damaged: ") + bad.what());
   }
   beginning_.time = state_.time;
   if (time && !(std::abs(*time - state_.time) <= kSameTime * std::abs(state_.time))) {
     throw SceneError(
-        file, 0, "",
+        file,
         fmt::format("is the state at t = {} s; to begin at t = {} s is not supported yet, because "
                     "frames hold no whole state: run the other scene --until that time",
                     state_.time, *time));
@@ -67,7 +66,7 @@ void OtherRun::load(const std::string& file) {
   of_simulation("state", state_);
   // The time of a static run is that of its load histories: the velocities of what it drives are
   // none that bodies have.
-  if (simulation.contains("equilibrium")) std::fill(state_.v.begin(), state_.v.end(), 0.);
+  if (simulation.contains("equilibrium")) std::ranges::fill(state_.v, 0.);
   memory_ = memory_in(simulation);
 }
 
@@ -79,11 +78,11 @@ Beginning OtherRun::move_into(Scene& scene) {
   Inheritance found = inheritance(record_, state_, scene.model);
   if (found.starts.empty()) {
     throw SceneError(
-        beginning_.folder, 0, "",
+        beginning_.folder,
         fmt::format("has no body of the same name and shape as one of {}", scene.file));
   }
   if (scene.time.statics) {  // nothing moves there
-    for (BodyStart& start : found.starts) std::fill(start.v.begin(), start.v.end(), 0.);
+    for (BodyStart& start : found.starts) std::ranges::fill(start.v, 0.);
   }
   begin_at(scene.model, found.starts);
   heirs_ = std::move(found.heirs);

@@ -1,7 +1,6 @@
 // A run that begins where another one has stopped, with the scene of its own.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -95,7 +95,7 @@ HistoryWriter::Parts Run::resume() {
 
 void Run::refuse_other_beginning() const {
   if (settings_.from.empty() || settings_.from == progress_.beginning.folder) return;
-  throw SceneError(settings_.folder, 0, "",
+  throw SceneError(settings_.folder,
                    fmt::format("holds a run that has not begun with that in \"{}\"; leave out "
                                "--from, or choose another folder",
                                settings_.from));
@@ -197,7 +197,7 @@ void Run::require_forces() const {
     list += (list.empty() ? "\"" : ", \"") + force.name + '"';
   }
   throw SceneError(
-      scene_.file, 0, "",
+      scene_.file,
       forces_before_->empty()
           ? "the run that goes on here had no added forces; leave them out"
           : fmt::format("the run that goes on here had the added forces {}; add them again, in "

@@ -34,13 +34,6 @@ void write_sealed(const std::string& file, const std::function<void(Archive&)>& 
       Lasting::yes);
 }
 
-std::string sealed(std::string object) {
-  object.resize(object.rfind('}'));
-  Checksum checksum;
-  checksum.add(object);
-  return object + seal(checksum);
-}
-
 std::string read_sealed(const std::string& file) {
   std::string text = read_text(file);
   if (text.empty()) throw Damaged(file, "is damaged: it is empty");

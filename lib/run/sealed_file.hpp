@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
 
 #include "lib/archive/archive.hpp"
 #include "lib/text/error.hpp"
@@ -15,7 +14,7 @@ namespace apothem {
 class Damaged : public SceneError {
  public:
   Damaged(const std::string& file, const std::string& fault)
-      : SceneError(file, 0, "", fault + "; run it anew"), fault_(file + ": " + fault) {}
+      : SceneError(file, fault + "; run it anew"), fault_(file + ": " + fault) {}
   /// The file and what is wrong, without the remedy.
   [[nodiscard]] const std::string& fault() const { return fault_; }
 
@@ -26,9 +25,6 @@ class Damaged : public SceneError {
 /// Writes a file that outlasts a machine that stops: an object with what `write` writes and its
 /// checksum. Throws SystemFailure; an older file is then intact.
 void write_sealed(const std::string& file, const std::function<void(Archive&)>& write);
-
-/// The text of an object with its checksum.
-std::string sealed(std::string object);
 
 /// The text of a sealed file. Throws Damaged, also if it has no checksum, and SceneError if it
 /// cannot be read.

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "lib/dynamics/unstable.hpp"
 #include "lib/system/clock.hpp"
 

@@ -1,5 +1,6 @@
 #include "lib/run/summary.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "lib/output/files.hpp"
@@ -13,21 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(Run::Status status) {
-  switch (status) {
-    case Run::Status::running:
-      return "running";
-    case Run::Status::done:
-      return "done";
-    case Run::Status::interrupted:
-      return "interrupted";
-    case Run::Status::unstable:
-      return "unstable";
-    case Run::Status::failed:
-      return "failed";
-  }
-  return "";
-}
+// In the order of Run::Status.
+constexpr std::array kStatusNames{"running", "done", "interrupted", "unstable", "failed"};
 
 Json wall_time(const Run& run, double seconds) {
   Json parts;
@@ -160,7 +148,7 @@ std::string summary_text(const Run& run) {
             {"scene_hash", run.hash_of_scene()},
             {"set", settings(scene)},
             {"version", kVersion},
-            {"status", name_of(run.status())},
+            {"status", kStatusNames[static_cast<size_t>(run.status())]},
             {"stopped_by", nullptr},
             {"threads", run.settings().threads},
             {"time", state.time},

@@ -25,8 +25,8 @@ void BlockReader::read(JsonObject& fill) {
   const JsonValue* size = fill.optional("diameter");
   if (size) {
     diameter_ = diameter(*size);
-  } else if (!std::all_of(shapes_.begin(), shapes_.end(),
-                          [](const Shape& s) { return s.own_diameter.has_value(); })) {
+  } else if (!std::ranges::all_of(shapes_,
+                                  [](const Shape& s) { return s.own_diameter.has_value(); })) {
     fill.required("diameter",
                   "of the disc of equal area, in m; only given polygons have a "
                   "size of their own");
@@ -61,7 +61,7 @@ BlockReader::Bounds BlockReader::range(const JsonValue& value, double least, dou
 BlockReader::Shape BlockReader::shape(const JsonValue& value) const {
   JsonObject object(in_, value);
   Shape shape;
-  if (const JsonValue* v = object.optional("weight")) shape.weight = in_.positive(*v, "");
+  object.read("weight", shape.weight, &JsonReader::positive, "");
   int kinds = 0;
   if (const JsonValue* v = object.optional("polygon")) {
     const Polygon polygon = read_polygon(in_, *v);

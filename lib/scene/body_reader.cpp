@@ -89,9 +89,7 @@ std::vector<std::vector<Vec2>> BodyReader::outlines() const {
     const Mesh& mesh = std::get<MeshSpec>(shapes_[i]).mesh;
     for (const BoundaryLoop& loop : boundary(mesh).loops) {
       if (loop.is_hole) continue;
-      std::vector<Vec2> ring;
-      for (const int node : loop.nodes) ring.push_back(mesh.nodes[node]);
-      rings.push_back(moved(*values_[i], std::move(ring), mesh_centroid(mesh)));
+      rings.push_back(moved(*values_[i], mesh.places(loop.nodes), mesh_centroid(mesh)));
     }
   }
   return rings;
@@ -155,7 +153,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon,
   if (const JsonValue* v = object.optional("position")) {
     body.position = in_.vec2(*v, "m") - model_.origin;
   }
-  if (const JsonValue* v = object.optional("angle")) body.angle = in_.number(*v, "rad");
+  object.read("angle", body.angle, &JsonReader::number, "rad");
   if (const JsonValue* v = object.optional("motion")) {
     body.motion = motion(*v);
     if (body.motion == Motion::prescribed) prescribed_motion(*v, body);
@@ -204,9 +202,8 @@ void BodyReader::deformable_body(const JsonValue& value, MeshSpec spec) {
   reorder_along_curve(body.mesh);
   if (const JsonValue* v = object.optional("materials")) element_materials(*v, body);
   body.first_node = model_.node_count();
-  DeformableReader reader(in_, model_, body);
-  if (const JsonValue* v = object.optional("supports")) reader.supports(*v);
-  if (const JsonValue* v = object.optional("loads")) reader.loads(*v);
+  if (const JsonValue* v = object.optional("supports")) read_supports(in_, *v, model_, body);
+  if (const JsonValue* v = object.optional("loads")) read_loads(in_, *v, model_, body);
   initial_velocity(object, body.velocity, body.spin);
   if (const JsonValue* v = object.optional("motion")) motion(*v);
   object.finish();
@@ -242,9 +239,7 @@ MaterialIndex BodyReader::material(const JsonValue& name) const {
   const std::string& wanted = in_.string(name);
   const auto found = std::ranges::find(model_.materials, wanted, &Material::name);
   if (found == model_.materials.end()) {
-    std::vector<std::string> known;
-    for (const Material& m : model_.materials) known.push_back(m.name);
-    in_.fail(name, fmt::format("unknown material {}", suggest(wanted, known)));
+    in_.fail(name, "unknown material " + suggest(wanted, names_of(model_.materials)));
   }
   return static_cast<MaterialIndex>(found - model_.materials.begin());
 }
@@ -272,7 +267,7 @@ void BodyReader::element_materials(const JsonValue& value, DeformableBody& body)
   std::vector<int> taken(body.element_material.size(), -1);  // by which of the groups
   for (size_t i = 0; i < groups.size(); ++i) {
     const JsonValue& name = value.items()[i];
-    if (std::find(known.begin(), known.end(), groups[i]) == known.end()) {
+    if (std::ranges::find(known, groups[i]) == known.end()) {
       in_.fail(name, known.empty()
                          ? "the mesh has no groups of elements: those are the physical "
                            "surfaces of a file of gmsh"
@@ -280,8 +275,8 @@ void BodyReader::element_materials(const JsonValue& value, DeformableBody& body)
     }
     const MaterialIndex chosen = material(name);
     require_elastic(name, chosen);
-    const auto group = std::find_if(body.mesh.groups.begin(), body.mesh.groups.end(),
-                                    [&](const MeshGroup& g) { return g.name == groups[i]; });
+    const auto group = std::ranges::find_if(
+        body.mesh.groups, [&](const MeshGroup& g) { return g.name == groups[i]; });
     for (const int e : group->elements) {
       MaterialIndex& of_element = body.element_material[e];
       if (taken[e] >= 0 && of_element != chosen) {

@@ -139,7 +139,7 @@ class WktDrawing {
   void coordinate_system(const std::string& system) {
     if (system == "EPSG:0") return;
     if (!system_.empty() && system != system_) {
-      throw SceneError(file_, 0, "",
+      throw SceneError(file_,
                        fmt::format("holds two coordinate systems, {} and {} (SRID), which is not "
                                    "supported yet; write all geometries in one of them",
                                    system_, system));
@@ -244,7 +244,7 @@ class FeatureDrawing {
     const std::string text = gdal().CPLGetLastErrorMsg();
     return text.empty() ? "" : " (" + text + ")";
   }
-  [[noreturn]] void fail(const std::string& what) const { throw SceneError(file_, 0, "", what); }
+  [[noreturn]] void fail(const std::string& what) const { throw SceneError(file_, what); }
   [[noreturn]] void fail_here(const std::string& what) const {
     fail(fmt::format("{} {}: {}", noun(), number_, what));
   }
@@ -389,11 +389,10 @@ Drawing read_drawing(const std::string& file) {
                                             {".wkt", nullptr},
                                             {".txt", nullptr}}};
   const std::string ending = lower_case(std::filesystem::path(file).extension().string());
-  const auto format = std::find_if(kFormats.begin(), kFormats.end(),
-                                   [&](const Format& f) { return ending == f.ending; });
+  const auto format =
+      std::ranges::find_if(kFormats, [&](const Format& f) { return ending == f.ending; });
   if (format == kFormats.end()) {
-    throw SceneError(file, 0, "",
-                     "is of no known format; drawings are .dxf, .wkt, .geojson or .csv");
+    throw SceneError(file, "is of no known format; drawings are .dxf, .wkt, .geojson or .csv");
   }
   try {
     const QuietGdal quiet;
@@ -402,7 +401,7 @@ Drawing read_drawing(const std::string& file) {
   } catch (const SceneError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    throw SceneError(file, 0, "", error.what());
+    throw SceneError(file, error.what());
   }
 }
 

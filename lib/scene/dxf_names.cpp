@@ -90,7 +90,7 @@ std::string decoded(const std::string& file, std::string text, const std::string
   if (is_ascii) return text;
   if ((version >= "AC1021" || page.empty()) && is_utf8(text)) return text;
   if (auto result = to_utf8(text, encoding_of(page))) return std::move(*result);
-  throw SceneError(file, 0, "",
+  throw SceneError(file,
                    fmt::format("its names are not in the code page \"{}\" that its header states; "
                                "save it as DXF of 2007 or later, which is in UTF-8",
                                page.empty() ? "ANSI_1252" : page));

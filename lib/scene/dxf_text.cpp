@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -59,8 +58,7 @@ class TagReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw SceneError(file_, 0, "",
-                     fmt::format("is not valid DXF: {}; save it anew as DXF (ASCII)", what));
+    throw SceneError(file_, fmt::format("is not valid DXF: {}; save it anew as DXF (ASCII)", what));
   }
 
   // Lines end as on Unix, Windows or old Macs.
@@ -88,7 +86,7 @@ void refuse_other_files(const std::string& file, std::string_view text) {
   } else if (text.find('\0') != std::string_view::npos) {
     what = "is not valid DXF: it is not text; save it as DXF (ASCII)";
   }
-  if (!what.empty()) throw SceneError(file, 0, "", what);
+  if (!what.empty()) throw SceneError(file, what);
 }
 
 // ---------------------------------------------------------------------------- kinds of entities
@@ -160,7 +158,7 @@ class Preparation {
     size_t begin, end;
   };
 
-  [[noreturn]] void fail(const std::string& what) const { throw SceneError(file_, 0, "", what); }
+  [[noreturn]] void fail(const std::string& what) const { throw SceneError(file_, what); }
 
   [[nodiscard]] size_t next_of_code_0(size_t i) const {
     while (i < tags_.size() && tags_[i].code != 0) ++i;

@@ -187,8 +187,8 @@ std::vector<Face> faces_between(std::vector<Line> lines, double tolerance) {
     for (const Vec2& v : face[0]) box.include(v.x(), v.y());
     return std::pair(box.y0, box.x0);
   };
-  std::stable_sort(faces.begin(), faces.end(),
-                   [&](const Face& a, const Face& b) { return lowest(a) < lowest(b); });
+  std::ranges::stable_sort(faces,
+                           [&](const Face& a, const Face& b) { return lowest(a) < lowest(b); });
   return faces;
 }
 

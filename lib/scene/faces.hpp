@@ -13,9 +13,9 @@ namespace apothem {
 std::vector<std::vector<Vec2>> snap_ends(std::vector<std::vector<Vec2>> lines, double tolerance);
 
 /// The closed faces between lines (m), from below upwards: for each its outer ring and its holes.
-/// The lines may cross. Their ends are snapped as snap_ends() does.
-/// What bounds no face, like a joint that ends inside of a block, is left out. Neighbours share
-/// their vertices exactly. Throws std::runtime_error if GDAL was built without GEOS.
+/// The lines may cross. Their ends are snapped as snap_ends() does. What bounds no face, like a
+/// joint that ends inside of a block, is left out. Neighbours share their vertices exactly. Throws
+/// std::runtime_error if GDAL was built without GEOS.
 std::vector<std::vector<std::vector<Vec2>>> faces_between(std::vector<std::vector<Vec2>> lines,
                                                           double tolerance);
 

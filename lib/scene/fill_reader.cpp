@@ -16,6 +16,7 @@
 #include "lib/scene/polygon_value.hpp"
 #include "lib/scene/value_maker.hpp"
 #include "lib/system/memory.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -49,13 +50,9 @@ class Fill {
     object.required("material", "the name of a material");
     const JsonValue& region = object.required("region", "[[x,y],...] in m");
     outline_.emplace(read_polygon(in_, region));
-    if (const JsonValue* v = object.optional("holes")) {
-      for (const JsonValue& hole : in_.array(*v)) holes_.push_back(read_polygon(in_, hole));
-    }
-    if (const JsonValue* v = object.optional("arrangement")) {
-      arranged_ = static_cast<Arranged>(in_.choice(*v, {"random", "lattice", "dense", "voronoi"}));
-    }
-    if (const JsonValue* v = object.optional("gap")) gap_ = in_.not_negative(*v, "m");
+    object.each("holes", [&](const JsonValue& hole) { holes_.push_back(read_polygon(in_, hole)); });
+    object.choose("arrangement", arranged_, {"random", "lattice", "dense", "voronoi"});
+    object.read("gap", gap_, &JsonReader::not_negative, "m");
     const JsonValue* seed = object.optional("seed");
     RandomNumbers random(seed ? static_cast<std::uint64_t>(in_.count(*seed)) : 1);
     velocity_ = object.optional("velocity");
@@ -98,14 +95,9 @@ class Fill {
     if (!value) return;
     JsonObject object(in_, *value);
     mesh_size_ = in_.positive(object.required("size", "of the elements, in m"), "m");
-    if (const JsonValue* v = object.optional("element")) {
-      std::vector<std::string> names;
-      names.reserve(std::size(kElements));
-      for (const ElementName& e : kElements) names.emplace_back(e.name);
-      element_ = &kElements[static_cast<size_t>(in_.choice(*v, names))];
-    } else {
-      element_ = &kElements[static_cast<size_t>(ElementKind::quad4)];
-    }
+    ElementKind kind = ElementKind::quad4;
+    object.choose("element", kind, names_of(kElements));
+    element_ = &kElements[static_cast<size_t>(kind)];
     object.finish();
   }
 
@@ -115,7 +107,7 @@ class Fill {
     const JsonValue& times = object.required("times", "how often, the first time included");
     filled.batches = in_.count(times);
     if (filled.batches < 1) in_.fail(times, "must be 1 or more");
-    if (const JsonValue* v = object.optional("every")) filled.every = in_.not_negative(*v, "s");
+    object.read("every", filled.every, &JsonReader::not_negative, "s");
     object.finish();
     if (arranged_ == Arranged::voronoi) {
       in_.fail(*value, "has no meaning for Voronoi cells, which fill the region; leave it out");
@@ -348,11 +340,10 @@ class Fill {
 
 }  // namespace
 
-std::vector<Filled> FillReader::read(const JsonValue& list) {
+std::vector<Filled> read_fills(const JsonReader& in, const JsonValue& list,
+                               std::vector<std::vector<Vec2>> obstacles) {
   std::vector<Filled> fills;
-  for (const JsonValue& value : in_.array(list)) {
-    fills.push_back(Fill(in_, value).read(obstacles_));
-  }
+  for (const JsonValue& value : in.array(list)) fills.push_back(Fill(in, value).read(obstacles));
   return fills;
 }
 

@@ -21,19 +21,9 @@ struct Filled {
   double every = 0;               ///< s, least time between two batches
 };
 
-class FillReader {
- public:
-  /// `obstacles`: rings (m) of the bodies that the scene has already; blocks stay clear of them.
-  FillReader(const JsonReader& in, std::vector<std::vector<Vec2>> obstacles)
-      : in_(in), obstacles_(std::move(obstacles)) {}
-
-  /// Reads the scene's list of fills, each of which stays clear of those before it. Throws
-  /// SceneError.
-  std::vector<Filled> read(const JsonValue& list);
-
- private:
-  const JsonReader& in_;
-  std::vector<std::vector<Vec2>> obstacles_;
-};
+/// Reads the scene's list of fills, each of which stays clear of those before it and of the
+/// `obstacles`: rings (m) of the bodies that the scene has already. Throws SceneError.
+std::vector<Filled> read_fills(const JsonReader& in, const JsonValue& list,
+                               std::vector<std::vector<Vec2>> obstacles);
 
 }  // namespace apothem

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -120,21 +121,9 @@ class Builder {
 };
 
 const char* type_name(JsonValue::Type type) {
-  switch (type) {
-    case JsonValue::Type::null:
-      return "null";
-    case JsonValue::Type::boolean:
-      return "true/false";
-    case JsonValue::Type::number:
-      return "a number";
-    case JsonValue::Type::string:
-      return "a string";
-    case JsonValue::Type::array:
-      return "an array";
-    case JsonValue::Type::object:
-      return "an object";
-  }
-  return "?";
+  constexpr std::array kNames{"null",     "true/false", "a number",
+                              "a string", "an array",   "an object"};
+  return kNames[static_cast<size_t>(type)];
 }
 
 }  // namespace
@@ -234,7 +223,7 @@ std::vector<Vec2> JsonReader::ring(const JsonValue& value) const {
 
 int JsonReader::choice(const JsonValue& value, const std::vector<std::string>& names) const {
   const std::string& word = string(value);
-  const auto found = std::find(names.begin(), names.end(), word);
+  const auto found = std::ranges::find(names, word);
   if (found == names.end()) {
     fail(value, fmt::format("unknown choice {} (known: {})", suggest(word, names),
                             fmt::join(names, ", ")));
@@ -260,7 +249,7 @@ const JsonValue& JsonObject::required(const std::string& key, const std::string&
   if (const JsonValue* found = optional(key)) return *found;
   // The likeliest reason is that the key is misspelt.
   if (const std::string* close = nearest_word(key, value_.keys());
-      close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
+      close && std::ranges::find(known_, *close) == known_.end()) {
     reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));
   }
   reader_.fail(value_, fmt::format("missing key \"{}\": {}", key, meaning));
@@ -269,7 +258,7 @@ const JsonValue& JsonObject::required(const std::string& key, const std::string&
 void JsonObject::finish() const {
   for (size_t i = 0; i < value_.keys().size(); ++i) {
     const std::string& key = value_.keys()[i];
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (std::ranges::find(known_, key) != known_.end()) continue;
     reader_.fail(value_.items()[i], fmt::format("unknown key {} (known here: {})",
                                                 suggest(key, known_), fmt::join(known_, ", ")));
   }

@@ -42,6 +42,11 @@ class JsonReader {
   [[nodiscard]] std::vector<Vec2> ring(const JsonValue& value) const;
   /// The index of a string in `names`, which must contain it.
   int choice(const JsonValue& value, const std::vector<std::string>& names) const;
+  /// The same as an enumeration, whose names stand in its order.
+  template <class Enum, class Names = std::vector<std::string>>
+  Enum choice(const JsonValue& value, const Names& names) const {
+    return static_cast<Enum>(choice(value, std::vector<std::string>(names.begin(), names.end())));
+  }
 
  private:
   std::string file_;
@@ -56,6 +61,24 @@ class JsonObject {
   const JsonValue* optional(std::string key);
   /// The value of a key. Throws SceneError with its `meaning` if it is missing.
   const JsonValue& required(const std::string& key, const std::string& meaning);
+  /// Puts what a getter of the reader makes of the value of a key into `target`, if it is there.
+  template <class T, class Get, class... More>
+  void read(std::string key, T& target, Get get, const More&... more) {
+    if (const JsonValue* v = optional(std::move(key))) target = (reader_.*get)(*v, more...);
+  }
+  /// Likewise one of the names of an enumeration.
+  template <class Enum, class Names = std::vector<std::string>>
+  void choose(std::string key, Enum& target, const Names& names) {
+    const JsonValue* v = optional(std::move(key));
+    if (v) target = reader_.choice<Enum>(*v, names);
+  }
+  /// Calls use(item) for each item of the array of a key, if it is there.
+  template <class Use>
+  void each(std::string key, const Use& use) {
+    const JsonValue* v = optional(std::move(key));
+    if (!v) return;
+    for (const JsonValue& item : reader_.array(*v)) use(item);
+  }
   /// Throws SceneError at the first key that nobody asked for. Called after the last key was read.
   void finish() const;
   [[nodiscard]] const JsonValue& value() const { return value_; }

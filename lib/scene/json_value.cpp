@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 
 // What an array or an object holds, at an address that does not change when the value is moved, and
@@ -17,49 +19,25 @@ struct JsonValue::Array : Container {};
 struct JsonValue::Object : Container {};
 
 JsonValue::JsonValue(Type type, int line) : line_(line) {
-  switch (type) {
-    case Type::null:
-      break;
-    case Type::boolean:
-      data_ = false;
-      break;
-    case Type::number:
-      data_ = 0.0;
-      break;
-    case Type::string:
-      data_ = std::make_unique<std::string>();
-      break;
-    case Type::array:
-      data_ = std::make_unique<Array>();
-      break;
-    case Type::object:
-      data_ = std::make_unique<Object>();
-      container()->keys = std::make_shared<std::vector<std::string>>();
-      break;
-  }
+  if (type == Type::boolean) data_ = false;
+  if (type == Type::number) data_ = 0.0;
+  if (type == Type::string) data_ = std::make_unique<std::string>();
+  if (type == Type::array) data_ = std::make_unique<Array>();
+  if (type != Type::object) return;
+  data_ = std::make_unique<Object>();
+  container()->keys = std::make_shared<std::vector<std::string>>();
 }
 
 JsonValue::JsonValue(const JsonValue& other)
     : in_(other.in_), index_(other.index_), line_(other.line_) {
-  switch (other.type()) {
-    case Type::null:
-      break;
-    case Type::boolean:
-      data_ = other.boolean();
-      break;
-    case Type::number:
-      data_ = other.number();
-      break;
-    case Type::string:
-      data_ = std::make_unique<std::string>(other.string());
-      break;
-    case Type::array:
-      data_ = std::make_unique<Array>(*std::get<std::unique_ptr<Array>>(other.data_));
-      break;
-    case Type::object:
-      data_ = std::make_unique<Object>(*std::get<std::unique_ptr<Object>>(other.data_));
-      break;
-  }
+  const auto copied = [](const auto& value) -> decltype(data_) {
+    if constexpr (requires { *value; }) {
+      return std::make_unique<std::decay_t<decltype(*value)>>(*value);
+    } else {
+      return value;
+    }
+  };
+  data_ = std::visit(copied, other.data_);
   Container* copy = container();
   if (copy == nullptr) return;
   for (JsonValue& item : copy->items) {
@@ -110,7 +88,7 @@ const std::vector<std::string>& JsonValue::keys() const {
 }
 
 const JsonValue* JsonValue::find(std::string_view key) const {
-  const auto found = std::find(keys().begin(), keys().end(), key);
+  const auto found = std::ranges::find(keys(), key);
   return found != keys().end() ? &items()[static_cast<size_t>(found - keys().begin())] : nullptr;
 }
 
@@ -186,17 +164,7 @@ void JsonValue::share_keys(Keys& keys) {
 }
 
 std::string escaped_key(const std::string& key) {
-  std::string result;
-  for (const char c : key) {
-    if (c == '~') {
-      result += "~0";
-    } else if (c == '/') {
-      result += "~1";
-    } else {
-      result += c;
-    }
-  }
-  return result;
+  return replaced(replaced(key, "~", "~0"), "/", "~1");
 }
 
 }  // namespace apothem

@@ -21,32 +21,23 @@ class MaterialReader {
 
  private:
   void elastic(JsonObject& object, Elastic& elastic) {
-    if (const JsonValue* v = object.optional("young")) elastic.young = in_.positive(*v, "Pa");
+    object.read("young", elastic.young, &JsonReader::positive, "Pa");
     if (const JsonValue* v = object.optional("poisson")) {
       elastic.poisson = in_.number(*v, "");
       if (!(elastic.poisson > -1 && elastic.poisson < 0.5)) {
         in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", elastic.poisson));
       }
     }
-    if (const JsonValue* v = object.optional("plane")) {
-      elastic.plane = static_cast<Plane>(in_.choice(*v, {kPlanes.begin(), kPlanes.end()}));
-    }
-    if (const JsonValue* v = object.optional("law")) {
-      elastic.law =
-          static_cast<ElasticLaw>(in_.choice(*v, {kElasticLaws.begin(), kElasticLaws.end()}));
-    }
+    object.choose("plane", elastic.plane, kPlanes);
+    object.choose("law", elastic.law, kElasticLaws);
   }
 
   void damping(const JsonValue& value, Material& material) {
     features_.add(Feature::material_damping, &value);
     JsonObject object(in_, value);
     in_.choice(object.required("model", "\"rayleigh\""), {"rayleigh"});
-    if (const JsonValue* v = object.optional("mass")) {
-      material.mass_damping = in_.positive(*v, "1/s");
-    }
-    if (const JsonValue* v = object.optional("stiffness")) {
-      material.stiffness_damping = in_.positive(*v, "s");
-    }
+    object.read("mass", material.mass_damping, &JsonReader::positive, "1/s");
+    object.read("stiffness", material.stiffness_damping, &JsonReader::positive, "s");
     object.finish();
     if (material.mass_damping == 0 && material.stiffness_damping == 0) {
       in_.fail(value, "must give \"mass\" (alpha in 1/s), \"stiffness\" (beta in s) or both");

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "geometry/meshing/voronoi.hpp"
 #include "lib/mesh/check.hpp"
 #include "lib/mesh/disc_mesh.hpp"
@@ -13,6 +11,7 @@
 #include "lib/mesh/rectangle_mesh.hpp"
 #include "lib/scene/mesh_file.hpp"
 #include "lib/scene/polygon_value.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -42,7 +41,7 @@ class MeshReader {
     if (source == nullptr) {
       in_.fail(value_, "must give one of rectangle, disc, half_disc, fill, voronoi, file");
     }
-    if (element_value_ != nullptr) read_element();
+    if (element_value_) element_ = &kElements[in_.choice(*element_value_, names_of(kElements))];
     MeshSpec spec{made(*source, *way), {}};
     if (mirror_value != nullptr) mirror_at(*mirror_value, spec.mesh);
     spec.element = element_ != nullptr ? element_->kind : fitting(spec.mesh);
@@ -68,13 +67,6 @@ class MeshReader {
     }
     mirror(mesh, x != nullptr ? 0 : 1, in_.number(x != nullptr ? *x : *y, "m"));
     check(mesh, value);
-  }
-
-  void read_element() {
-    std::vector<std::string> names;
-    names.reserve(kElements.size());
-    for (const ElementName& e : kElements) names.emplace_back(e.name);
-    element_ = &kElements[in_.choice(*element_value_, names)];
   }
 
   // The generators know nothing of the scene. Their errors are reported at the value from which the
@@ -123,7 +115,7 @@ class MeshReader {
     DiscCells cells;
     cells.quarter = in_.count(object.required("cells", "along a quarter of the circle"));
     const Vec2 centre = vec2_or_zero(object, "centre");
-    if (const JsonValue* v = object.optional("grading")) cells.grading = in_.number(*v, "");
+    object.read("grading", cells.grading, &JsonReader::number, "");
     object.finish();
     return disc_mesh(centre, radius, cells, shape());
   }
@@ -135,7 +127,7 @@ class MeshReader {
     cells.fine =
         in_.positive(object.required("fine", "half-width of the fine part, in m"), "m") / radius;
     cells.cells = in_.count(object.required("cells", "of the fine part's half-width"));
-    if (const JsonValue* v = object.optional("growth")) cells.growth = in_.number(*v, "");
+    object.read("growth", cells.growth, &JsonReader::number, "");
     const Vec2 pole = vec2_or_zero(object, "pole");
     object.finish();
     return half_disc_mesh(pole, radius, cells, shape());
@@ -145,9 +137,7 @@ class MeshReader {
     JsonObject object(in_, value);
     const Polygon outline = read_polygon(in_, outline_of(object));
     std::vector<Polygon> holes;
-    if (const JsonValue* v = object.optional("holes")) {
-      for (const JsonValue& hole : in_.array(*v)) holes.push_back(read_polygon(in_, hole));
-    }
+    object.each("holes", [&](const JsonValue& hole) { holes.push_back(read_polygon(in_, hole)); });
     const double size = in_.positive(object.required("size", "of the elements, in m"), "m");
     object.finish();
     return fill_mesh(outline, holes, size, shape());
@@ -157,11 +147,9 @@ class MeshReader {
     JsonObject object(in_, value);
     VoronoiOptions options;
     options.cells = in_.count(object.required("cells", "the number of cells"));
-    if (const JsonValue* v = object.optional("seed")) options.seed = in_.count(*v);
-    if (const JsonValue* v = object.optional("lloyd")) options.lloyd = in_.count(*v);
-    if (const JsonValue* v = object.optional("shortest_edge")) {
-      options.shortest_edge = in_.number(*v, "");
-    }
+    object.read("seed", options.seed, &JsonReader::count);
+    object.read("lloyd", options.lloyd, &JsonReader::count);
+    object.read("shortest_edge", options.shortest_edge, &JsonReader::number, "");
     const JsonValue* size = object.optional("size");
     const Polygon region =
         size != nullptr ? block(object, *size) : read_polygon(in_, outline_of(object));

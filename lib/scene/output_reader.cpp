@@ -17,8 +17,7 @@ constexpr size_t kMostByDefault = 20;  // bodies in the history of a scene that 
 // Index of the body of that name in the model's list of rigid or of deformable bodies, or -1.
 template <class Body>
 int index_in(const std::vector<Body>& bodies, const std::string& name) {
-  const auto found =
-      std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  const auto found = std::ranges::find_if(bodies, [&](const Body& b) { return b.name == name; });
   return found == bodies.end() ? -1 : static_cast<int>(found - bodies.begin());
 }
 
@@ -46,7 +45,7 @@ void OutputReader::tracked(const JsonValue& item) {
   const JsonValue* surface = object.optional("surface");
   const JsonValue* label = object.optional("name");
   object.finish();
-  const auto found = std::find(bodies_.begin(), bodies_.end(), in_.string(name));
+  const auto found = std::ranges::find(bodies_, in_.string(name));
   if (found == bodies_.end()) in_.fail(name, "unknown body " + suggest(name.string(), bodies_));
   const int place = static_cast<int>(found - bodies_.begin());
   const int rigid = index_in(model_.bodies, name.string());
@@ -67,7 +66,7 @@ void OutputReader::tracked(const JsonValue& item) {
 }
 
 void OutputReader::track_once(std::vector<int>& list, int body, const JsonValue& value) const {
-  if (std::find(list.begin(), list.end(), body) != list.end()) {
+  if (std::ranges::find(list, body) != list.end()) {
     in_.fail(value, "is tracked already; leave it out");
   }
   list.push_back(body);
@@ -89,8 +88,7 @@ void OutputReader::tracked_point(int deformable, const JsonValue& point, const J
     for (const TrackedPoint& p : output_.points) {
       if (p.name == candidate) return true;
     }
-    return candidate != body.name &&
-           std::find(bodies_.begin(), bodies_.end(), candidate) != bodies_.end();
+    return candidate != body.name && std::ranges::find(bodies_, candidate) != bodies_.end();
   };
   tracked.name = label ? in_.string(*label) : body.name;
   if (label) {
@@ -173,7 +171,7 @@ std::vector<Measure> OutputReader::measures(const JsonValue& value, double end,
     if (const JsonValue* v = object.optional("stopped_by")) {
       if (quantity) in_.fail(*v, "and \"quantity\" are two measures; make two entries");
       measure.stopped_by = in_.string(*v);
-      if (std::find(stops.begin(), stops.end(), measure.stopped_by) == stops.end()) {
+      if (std::ranges::find(stops, measure.stopped_by) == stops.end()) {
         in_.fail(*v, "no \"stop\" has the name " + suggest(measure.stopped_by, stops));
       }
     } else {
@@ -192,17 +190,14 @@ void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
                              const std::vector<HistoryColumn>& columns, double end,
                              Reduction& result) const {
   result.quantity = in_.string(quantity);
-  const auto found = std::find_if(columns.begin(), columns.end(), [&](const HistoryColumn& c) {
-    return c.name == result.quantity;
-  });
+  const auto found = std::ranges::find_if(
+      columns, [&](const HistoryColumn& c) { return c.name == result.quantity; });
   if (found == columns.end()) {
     in_.fail(quantity, "no history has a column " + suggest(result.quantity, names_of(columns)));
   }
   result.unit = found->unit;
   result.jumps = found->jumps;
-  if (const JsonValue* v = object.optional("take")) {
-    result.take = static_cast<Reduction::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
-  }
+  object.choose("take", result.take, kTakes);
   if (result.take == Reduction::Take::slope) result.unit += " per s";
   if (const JsonValue* v = object.optional("between")) {
     const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
@@ -227,17 +222,17 @@ Expectation OutputReader::expectation(const JsonValue& item,
     in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
   }
   if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
-  if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
+  object.read("label", e.label, &JsonReader::string);
   if (const JsonValue* v = object.optional("basis")) {
-    e.basis = static_cast<Basis>(in_.choice(*v, {kBases.begin(), kBases.end()}));
+    e.basis = in_.choice<Basis>(*v, kBases);
   }
-  if (const JsonValue* v = object.optional("source")) e.source = in_.string(*v);
+  object.read("source", e.source, &JsonReader::string);
   object.finish();
   return e;
 }
 
 bool has_control_character(const std::string& name) {
-  return std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; });
+  return std::ranges::any_of(name, [](unsigned char c) { return c < 32 || c == 127; });
 }
 
 void refuse_as_column(const JsonReader& in, const JsonValue& name) {

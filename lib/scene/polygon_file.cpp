@@ -12,7 +12,7 @@ namespace {
 
 RingText parse_polygon(const std::string& text, const std::string& file) {
   const size_t start = text.find_first_not_of(" \t\r\n\f\v");
-  if (start == std::string::npos) throw SceneError(file, 0, "", "is empty; give a polygon");
+  if (start == std::string::npos) throw SceneError(file, "is empty; give a polygon");
   // Of the notations, only JSON begins with a bracket, or with a comment.
   if (std::string("[{/").find(text[start]) == std::string::npos) return parse_wkt(text, file);
   const JsonReader reader(file);

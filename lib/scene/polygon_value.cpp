@@ -14,13 +14,12 @@ namespace {
 // A body has no scale, so that its file must be in metres if it states a unit.
 void require_metres(const std::string& file, const Polygon& polygon) {
   const DrawingUnit unit = unit_of_polygon(read_text(file), file, bounding_box(polygon));
-  if (!unit.problem.empty()) throw SceneError(file, 0, "", unit.problem);
+  if (!unit.problem.empty()) throw SceneError(file, unit.problem);
   if (unit.metres == 1) return;
   throw SceneError(
-      file, 0, "",
-      fmt::format("is in units of {:.10g} m ({}); read it by \"import\", which converts "
-                  "it to metres, or write it in metres",
-                  unit.metres, unit.source));
+      file, fmt::format("is in units of {:.10g} m ({}); read it by \"import\", which converts "
+                        "it to metres, or write it in metres",
+                        unit.metres, unit.source));
 }
 
 }  // namespace

@@ -10,24 +10,11 @@
 
 namespace apothem {
 
-class PopulationReader {
- public:
-  /// The model has its origin, and receives world and regions.
-  PopulationReader(const JsonReader& in, Model& model, UsedFeatures& features)
-      : in_(in), model_(model), features_(features) {}
-
-  /// All throw SceneError.
-  void world(const JsonValue& value);
-  void regions(const JsonValue& value);
-  /// Called after `regions`.
-  [[nodiscard]] std::vector<StopRule> stops(const JsonValue& value);
-
- private:
-  [[nodiscard]] StopRule stop(const JsonValue& value) const;
-
-  const JsonReader& in_;
-  Model& model_;
-  UsedFeatures& features_;
-};
+/// They read the keys "world", "regions" and, after the regions, "stop". The model has its origin,
+/// and receives world and regions. All throw SceneError.
+void read_world(const JsonReader& in, const JsonValue& value, Model& model, UsedFeatures& features);
+void read_regions(const JsonReader& in, const JsonValue& value, Model& model);
+std::vector<StopRule> read_stops(const JsonReader& in, const JsonValue& value, const Model& model,
+                                 UsedFeatures& features);
 
 }  // namespace apothem

@@ -17,7 +17,7 @@ void for_each_line(const std::string& file, const char* form,
                    const std::function<void(const BatchLine&)>& evaluate) {
   std::ifstream stream = open_text(file);
   for_each_line(stream, file, form, evaluate);
-  if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
+  if (stream.bad()) throw SceneError(file, "cannot be read");
 }
 
 void for_each_line(std::istream& text, const std::string& file, const char* form,
@@ -33,7 +33,7 @@ void for_each_line(std::istream& text, const std::string& file, const char* form
     line.has_count = words >> count && find_count(count);
     evaluate(line);
   }
-  if (!any) throw SceneError(file, 0, "", std::string("is empty; write on each line ") + form);
+  if (!any) throw SceneError(file, std::string("is empty; write on each line ") + form);
 }
 
 std::vector<Vec2> read_ring(std::istream& line) {

@@ -15,6 +15,7 @@
 #include "lib/scene/time_reader.hpp"
 #include "lib/scene/value_maker.hpp"
 #include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -37,16 +38,16 @@ class SceneReader {
     if (!list && !fills) top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
     if (list && in_.array(*list).empty() && !fills) in_.fail(*list, "must hold at least one body");
     top.optional("import");
-    ContactReader contact(in_, model_, features_);
-    if (const JsonValue* v = top.optional("contact")) {
-      contact.read(*v);
+    const JsonValue* contact = top.optional("contact");
+    if (contact) {
+      read_contact(in_, *contact, model_, features_);
     } else if (fills || (list && list->items().size() > 1)) {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
     if (list) bodies.add(list->items());
     std::vector<Filled> filled;
-    if (fills) filled = FillReader(in_, bodies.outlines()).read(*fills);
+    if (fills) filled = read_fills(in_, *fills, bodies.outlines());
     for (Filled& fill : filled) {
       fill.polygons.empty() ? bodies.add(fill.bodies)
                             : bodies.add(fill.alike, std::move(fill.polygons));
@@ -55,7 +56,7 @@ class SceneReader {
     scene_.rigid_pointers = bodies.rigid_pointers();
     scene_.warnings = bodies.warnings();
     add_inflows(bodies, list ? list->items().size() : 0, filled);
-    contact.read_pairs();
+    if (contact) read_contact_rules(in_, *contact, model_, features_);
     population(top);
     scene_.time = read_time(in_, top.required("time", "{\"end\": ...} in s"), features_);
     const JsonValue* output = top.optional("output");
@@ -87,7 +88,7 @@ class SceneReader {
     if (const JsonValue* v = top.optional("name")) model_.name = scene_name(*v);
     if (const JsonValue* v = top.optional("description")) in_.string(*v);
     if (const JsonValue* v = top.optional("gravity")) gravity(*v);
-    if (const JsonValue* v = top.optional("thickness")) model_.thickness = in_.positive(*v, "m");
+    top.read("thickness", model_.thickness, &JsonReader::positive, "m");
   }
 
   void gravity(const JsonValue& value) {
@@ -122,10 +123,11 @@ class SceneReader {
   }
 
   void population(JsonObject& top) {
-    PopulationReader reader(in_, model_, features_);
-    if (const JsonValue* v = top.optional("world")) reader.world(*v);
-    if (const JsonValue* v = top.optional("regions")) reader.regions(*v);
-    if (const JsonValue* v = top.optional("stop")) scene_.stops = reader.stops(*v);
+    if (const JsonValue* v = top.optional("world")) read_world(in_, *v, model_, features_);
+    if (const JsonValue* v = top.optional("regions")) read_regions(in_, *v, model_);
+    if (const JsonValue* v = top.optional("stop")) {
+      scene_.stops = read_stops(in_, *v, model_, features_);
+    }
   }
 
   const std::string& scene_name(const JsonValue& value) {
@@ -159,8 +161,7 @@ class SceneReader {
 
   // What can end a run before its time.
   [[nodiscard]] std::vector<std::string> stop_names() const {
-    std::vector<std::string> names;
-    for (const StopRule& rule : scene_.stops) names.push_back(rule.name);
+    std::vector<std::string> names = names_of(scene_.stops);
     if (model_.world.outside == World::Outside::stop) names.emplace_back(kStoppedOutside);
     return names;
   }

@@ -79,8 +79,7 @@ class Path {
 
   void cut(std::string& rest, const std::string& part) const {
     if (part.empty()) {
-      throw SceneError(file_, 0, "",
-                       fmt::format("\"{}\": the path has an empty part", setting_.text()));
+      throw SceneError(file_, fmt::format("\"{}\": the path has an empty part", setting_.text()));
     }
     rest.erase(0, part.size() + 1);
   }
@@ -100,17 +99,16 @@ class Path {
 Setting parse_setting(const std::string& text, const std::string& file) {
   const size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
-    throw SceneError(file, 0, "",
-                     fmt::format("\"{}\" is no setting; write PATH=VALUE, like "
-                                 "contact.friction.coefficient=0.3",
-                                 text));
+    throw SceneError(file, fmt::format("\"{}\" is no setting; write PATH=VALUE, like "
+                                       "contact.friction.coefficient=0.3",
+                                       text));
   }
   Setting setting{text.substr(0, equals), text.substr(equals + 1)};
   const Json json = Json::parse(setting.value, nullptr, /*allow_exceptions=*/false);
   if (!json.is_discarded()) {
     setting.value = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   } else if (std::string("[{\"").find(setting.value[0]) != std::string::npos) {
-    throw SceneError(file, 0, "", fmt::format("\"{}\": the value is not valid JSON", text));
+    throw SceneError(file, fmt::format("\"{}\": the value is not valid JSON", text));
   } else {
     setting.value =
         json_of_word(setting.value).dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -110,8 +110,8 @@ class Reader {
       if (known && shape.ends_with(suffix)) refuse_dimension();
     }
     if (shape != "POLYGON" && shape != "MULTIPOLYGON") {
-      const bool other = std::any_of(kOtherShapes.begin(), kOtherShapes.end(),
-                                     [&](const char* name) { return shape.starts_with(name); });
+      const bool other = std::ranges::any_of(
+          kOtherShapes, [&](const char* name) { return shape.starts_with(name); });
       fail(other ? fmt::format("is a {}; give a POLYGON ((x y, x y, ...))", shape)
                  : "is not a polygon as WKT or JSON" + meant());
     }

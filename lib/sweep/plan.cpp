@@ -55,8 +55,7 @@ void refuse_repeated(const Variation& variation, const std::string& where) {
   for (const std::string& value : variation.values) {
     if (known.insert(nlohmann::json::parse(value)).second) continue;
     throw SceneError(
-        where, 0, "",
-        fmt::format("\"{}\" has the value {} twice; give it once", variation.path, value));
+        where, fmt::format("\"{}\" has the value {} twice; give it once", variation.path, value));
   }
 }
 
@@ -110,7 +109,7 @@ void refuse_repeated_rows(const VariationTable& table, const std::vector<int>& l
 Variation parse_variation(const std::string& text, const std::string& where) {
   const size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
-    throw SceneError(where, 0, "",
+    throw SceneError(where,
                      fmt::format("\"{}\" varies nothing; write PATH=A,B,C or PATH=FROM..TO[:STEP], "
                                  "like contact.friction.coefficient=0.1..0.5:0.1",
                                  text));
@@ -118,7 +117,7 @@ Variation parse_variation(const std::string& text, const std::string& where) {
   Variation variation{text.substr(0, equals), {}};
   for (const std::string& item : list_items(text.substr(equals + 1))) {
     if (item.empty()) {
-      throw SceneError(where, 0, "",
+      throw SceneError(where,
                        fmt::format("\"{}\": a value of the list is empty; write PATH=A,B,C", text));
     }
     try {
@@ -127,7 +126,7 @@ Variation parse_variation(const std::string& text, const std::string& where) {
         continue;
       }
     } catch (const BadNumber& bad) {
-      throw SceneError(where, 0, "", fmt::format("\"{}\": {}", text, bad.what()));
+      throw SceneError(where, fmt::format("\"{}\": {}", text, bad.what()));
     }
     variation.values.push_back(parse_setting(variation.path + "=" + item, where).value);
   }
@@ -138,8 +137,7 @@ Variation parse_variation(const std::string& text, const std::string& where) {
 VariationTable read_variation_table(const std::string& file) {
   const std::vector<CsvRow> rows = read_csv(file);
   if (rows.size() < 2) {
-    throw SceneError(file, 0, "",
-                     "has no rows; its first line names paths, each further one a run");
+    throw SceneError(file, "has no rows; its first line names paths, each further one a run");
   }
   VariationTable table{rows.front().cells, {}};
   std::vector<int> lines;
@@ -192,12 +190,12 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
     plan.paths.push_back(v.path);
     runs *= v.values.size();
     if (runs > kMostRuns) {
-      throw SceneError("--vary", 0, "",
+      throw SceneError("--vary",
                        fmt::format("the plan has more than {} runs; vary less at once", kMostRuns));
     }
   }
   if (plan.paths.empty()) {
-    throw SceneError("sweep", 0, "", "nothing varies; give --vary PATH=A,B,C or --table FILE.csv");
+    throw SceneError("sweep", "nothing varies; give --vary PATH=A,B,C or --table FILE.csv");
   }
   std::vector<std::string> all = table.paths;
   all.insert(all.end(), plan.paths.begin() + static_cast<std::ptrdiff_t>(labelled),
@@ -205,7 +203,7 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
   std::set<std::string> known;
   for (const std::string& path : all) {
     if (!known.insert(path).second) {
-      throw SceneError("--vary", 0, "",
+      throw SceneError("--vary",
                        fmt::format("\"{}\" is varied twice; give all its values at once", path));
     }
   }
@@ -237,7 +235,7 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
     run.key = folder_key(names, run.values);
     if (!keys.insert(run.key).second) {
       throw SceneError(
-          "--table", 0, "",
+          "--table",
           fmt::format("two rows have the labels of \"{}\"; give each row its own", run.key));
     }
     plan.runs.push_back(std::move(run));
@@ -259,7 +257,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& paths) {
     const auto shared = [&](const std::string& other) {
       return other != path && tail(other, count) == tail(path, count);
     };
-    while (tail(path, count) != path && std::any_of(paths.begin(), paths.end(), shared)) ++count;
+    while (tail(path, count) != path && std::ranges::any_of(paths, shared)) ++count;
     names.push_back(tail(path, count));
   }
   return names;

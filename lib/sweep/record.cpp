@@ -21,8 +21,8 @@ MeasuredValue measure_of(const Json& value) {
 }
 
 bool is_taken(const RunRecord& record, const std::string& name) {
-  return std::any_of(record.measures.begin(), record.measures.end(),
-                     [&](const auto& measure) { return measure.first == name; });
+  return std::ranges::any_of(record.measures,
+                             [&](const auto& measure) { return measure.first == name; });
 }
 
 std::string free_name(const RunRecord& record, const Json& expectation) {

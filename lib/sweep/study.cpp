@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -89,25 +90,9 @@ RunState state_of_files(const std::string& folder) {
 }  // namespace
 
 const char* name_of(RunState state) {
-  switch (state) {
-    case RunState::missing:
-      return "missing";
-    case RunState::changed:
-      return "changed";
-    case RunState::interrupted:
-      return "interrupted";
-    case RunState::done:
-      return "done";
-    case RunState::unstable:
-      return "unstable";
-    case RunState::failed:
-      return "failed";
-    case RunState::refused:
-      return "refused";
-    case RunState::crashed:
-      return "crashed";
-  }
-  return "";
+  constexpr std::array kNames{"missing",  "changed", "interrupted", "done",
+                              "unstable", "failed",  "refused",     "crashed"};
+  return kNames[static_cast<size_t>(state)];
 }
 
 bool has_failed(RunState state) {
@@ -121,7 +106,7 @@ Study::Study(StudySettings settings, Plan plan)
     const std::vector<Setting>& varied = plan_.runs.front().settings;
     if (std::ranges::find(varied, s.path, &Setting::path) == varied.end()) continue;
     throw SceneError(
-        "--set", 0, "",
+        "--set",
         fmt::format("\"{}\" is varied; leave it out of --set or of the variations", s.path));
   }
   find_beginnings();
@@ -190,7 +175,7 @@ std::string Study::from_of(const PlannedRun& run) const {
   }
   if (found.size() == 1) return found.front();
   throw SceneError(
-      settings_.from, 0, "",
+      settings_.from,
       fmt::format("{} finished runs of this study have the values of \"{}\"; one has to, "
                   "so that the run can begin with it",
                   found.size(), run.key));
@@ -209,8 +194,7 @@ void Study::find_beginnings() {
     for (const auto& [path, value] : json["set"].items()) settings.push_back({path, value.dump()});
   }
   if (beginnings_.empty()) {
-    throw SceneError(settings_.from, 0, "",
-                     "holds a study without a finished run; do its runs first");
+    throw SceneError(settings_.from, "holds a study without a finished run; do its runs first");
   }
 }
 

@@ -21,7 +21,7 @@ struct Abscissa {
 
 Abscissa abscissa_of(const SummaryTable& table) {
   Abscissa result;
-  const bool numbers = std::all_of(table.rows.begin(), table.rows.end(), [](const SummaryRow& row) {
+  const bool numbers = std::ranges::all_of(table.rows, [](const SummaryRow& row) {
     return nlohmann::json::parse(row.values.front()).is_number();
   });
   for (const SummaryRow& row : table.rows) {
@@ -60,8 +60,7 @@ std::string axis_label(const SummaryColumn& column) {
 void sort_by_x(Curve& curve) {
   std::vector<size_t> order(curve.x.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t i, size_t j) { return curve.x[i] < curve.x[j]; });
+  std::ranges::stable_sort(order, [&](size_t i, size_t j) { return curve.x[i] < curve.x[j]; });
   for (std::vector<double>* values : {&curve.y, &curve.low, &curve.high, &curve.x}) {
     std::vector<double> sorted;
     sorted.reserve(order.size());

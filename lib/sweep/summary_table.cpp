@@ -62,9 +62,8 @@ SummaryCell rate_cell(const Records& runs, const SurvivalChoice& survival) {
     const std::optional<double> event =
         survival.event.empty() ? 1 : number_of(value_of(*run, survival.event));
     if (exposure && *exposure < 0) {
-      throw SceneError("--survival", 0, "",
-                       fmt::format("\"{}\" is {} in a run; an exposure is 0 or more",
-                                   survival.measure, *exposure));
+      throw SceneError("--survival", fmt::format("\"{}\" is {} in a run; an exposure is 0 or more",
+                                                 survival.measure, *exposure));
     }
     if (exposure && event) values.push_back({*exposure, *event != 0});
   }
@@ -80,7 +79,7 @@ void require_measure(const std::string& name, bool yes_no,
     if (m.yes_no == yes_no) known.push_back(m.name);
   }
   const char* kind = yes_no ? "yes/no" : "number";
-  throw SceneError("--survival", 0, "",
+  throw SceneError("--survival",
                    fmt::format("no run has a {} measure {} (known: {})", kind, suggest(name, known),
                                known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
@@ -148,9 +147,8 @@ SummaryTable summarise(const Plan& plan, const std::vector<RunRecord>& records,
   for (size_t g = 0; g < groups.size(); ++g) {
     SummaryRow& row = table.rows[g];
     row.runs = groups[g].size();
-    row.done = static_cast<size_t>(
-        std::count_if(groups[g].begin(), groups[g].end(),
-                      [](const RunRecord* run) { return run->state == RunState::done; }));
+    row.done = static_cast<size_t>(std::ranges::count_if(
+        groups[g], [](const RunRecord* run) { return run->state == RunState::done; }));
     for (const SummaryColumn& column : table.columns) {
       row.cells.push_back(column.kind == Kind::mean ? mean_cell(groups[g], column.measure)
                           : column.kind == Kind::proportion

@@ -92,12 +92,7 @@ std::vector<std::string> csv_cells(std::string_view line, const std::string& fil
 
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos && trimmed(text) == text) return text;
-  std::string cell = "\"";
-  for (const char c : text) {
-    if (c == '"') cell += c;
-    cell += c;
-  }
-  return cell + "\"";
+  return "\"" + replaced(text, "\"", "\"\"") + "\"";
 }
 
 std::string csv_row(const std::vector<std::string>& cells) {

@@ -17,6 +17,8 @@ class SceneError : public std::runtime_error {
         pointer_(pointer),
         reason_(one_line(what)),
         line_(line) {}
+  /// Of the file as a whole.
+  SceneError(const std::string& file, const std::string& what) : SceneError(file, 0, "", what) {}
 
   [[nodiscard]] const std::string& file() const { return file_; }
   /// Counted from 1; 0 if it is not known.

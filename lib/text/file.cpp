@@ -13,13 +13,12 @@ namespace apothem {
 
 std::ifstream open_text(const std::string& file) {
   const std::string refusal = refusal_of_input(file, kLargestText);
-  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
+  if (!refusal.empty()) throw SceneError(file, refusal);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
-    throw SceneError(file, 0, "",
-                     fmt::format("cannot be opened: {}; check the name",
-                                 std::generic_category().message(errno)));
+    throw SceneError(file, fmt::format("cannot be opened: {}; check the name",
+                                       std::generic_category().message(errno)));
   }
   return stream;
 }
@@ -27,13 +26,13 @@ std::ifstream open_text(const std::string& file) {
 void strip_byte_order_mark(std::string& text, const std::string& file) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    throw SceneError(file, 0, "", "is UTF-16 text; save it as UTF-8");
+    throw SceneError(file, "is UTF-16 text; save it as UTF-8");
   }
 }
 
 std::string read_text(const std::string& file, size_t limit) {
   const std::string refusal = refusal_of_input(file, limit);
-  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
+  if (!refusal.empty()) throw SceneError(file, refusal);
   std::ifstream stream = open_text(file);
   limit = input_limit(limit);
   std::string text;
@@ -42,10 +41,10 @@ std::string read_text(const std::string& file, size_t limit) {
          stream.gcount() > 0) {
     text.append(block.data(), static_cast<size_t>(stream.gcount()));
     if (text.size() > limit) {
-      throw SceneError(file, 0, "", too_large(limit));
+      throw SceneError(file, too_large(limit));
     }
   }
-  if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
+  if (stream.bad()) throw SceneError(file, "cannot be read");
   strip_byte_order_mark(text, file);
   return text;
 }

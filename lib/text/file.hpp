@@ -18,15 +18,15 @@ inline constexpr size_t kLargestText = size_t{1} << 30, kLargestJson = size_t{1}
 /// larger than `limit` (bytes).
 std::string read_text(const std::string& file, size_t limit = kLargestText);
 
+/// The same, or an empty text where read_text() would throw.
+std::string find_text(const std::string& file);
+
 /// Opens a file to read it as text. Throws SceneError if it is a directory or cannot be opened.
 std::ifstream open_text(const std::string& file);
 
 /// Takes the byte order mark of UTF-8 from the start of a text. Throws SceneError if the text is
 /// UTF-16.
 void strip_byte_order_mark(std::string& text, const std::string& file);
-
-/// The same, or an empty text where read_text() would throw.
-std::string find_text(const std::string& file);
 
 /// The bytes of a file that this program or a child of it has written. Empty if it cannot be read.
 std::string read_bytes(const std::string& file);

@@ -45,6 +45,13 @@ std::string_view trimmed(std::string_view text, std::string_view blanks) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
+std::string replaced(std::string text, std::string_view mark, std::string_view by) {
+  for (size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += by.size()) {
+    text.replace(at, mark.size(), by);
+  }
+  return text;
+}
+
 const std::string* nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string* best = nullptr;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
@@ -61,10 +68,9 @@ const std::string* nearest_word(std::string_view word, const std::vector<std::st
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string result = fmt::format("\"{}\"", word);
   // A word that begins another one is that one cut short, however much of it is missing.
-  const auto longer =
-      std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
-        return word.size() >= 3 && candidate.starts_with(word);
-      });
+  const auto longer = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    return word.size() >= 3 && candidate.starts_with(word);
+  });
   if (longer != candidates.end()) {
     result += fmt::format("; did you mean \"{}\"?", *longer);
   } else if (const std::string* best = nearest_word(word, candidates)) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "lib/output/checksum.hpp"
 #include "lib/run/run.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
@@ -17,6 +18,14 @@ inline std::string flying_block(const std::string& body = "", const std::string&
          body + R"( } ],
     "time": { "end": 0.5, "step": 1e-3 }, "output": { "frames": 5, "history": { "interval": 0.01 } })" +
          rest + " }";
+}
+
+/// The text of a JSON object with its checksum, as a state is written.
+inline std::string sealed(std::string object) {
+  object.resize(object.rfind('}'));
+  Checksum checksum;
+  checksum.add(object);
+  return object + ",\"checksum\":\"" + checksum.text() + "\"}\n";
 }
 
 inline Scene scene_of(const Folder& folder, const std::string& text) {

@@ -7,7 +7,6 @@
 
 #include "lib/output/files.hpp"
 #include "lib/run/hash.hpp"
-#include "lib/run/sealed_file.hpp"
 #include "tests/dynamics/term_of.hpp"
 #include "tests/run/scenes.hpp"
 

@@ -6,7 +6,6 @@
 
 #include "lib/output/files.hpp"
 #include "lib/run/hash.hpp"
-#include "lib/run/sealed_file.hpp"
 #include "tests/archive/saved.hpp"
 #include "tests/dynamics/term_of.hpp"
 #include "tests/run/scenes.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/cases/samples.hpp"
+#include "tests/random_simple.hpp"
 
 namespace apothem::samples {
 

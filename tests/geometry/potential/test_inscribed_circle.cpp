@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/public_rings.hpp"
+#include "tests/random_simple.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;

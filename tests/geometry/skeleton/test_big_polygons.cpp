@@ -7,6 +7,7 @@
 #include "geometry/skeleton/skeleton.hpp"
 #include "geometry/skeleton/skeleton_parts.hpp"
 #include "geometry/skeleton/wavefront.hpp"
+#include "tests/random_simple.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;
