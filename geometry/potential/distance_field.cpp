@@ -1,6 +1,5 @@
 #include "geometry/potential/distance_field.hpp"
 
-
 namespace apothem {
 
 DistanceField make_distance_field(const Polygon& polygon, double reference) {

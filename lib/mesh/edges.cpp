@@ -74,15 +74,12 @@ std::vector<MeshEdge> boundary_edges(const Mesh& mesh) {
 }
 
 const MeshEdge* find_edge(const std::vector<MeshEdge>& edges, int a, int b) {
-  const auto key = [](const std::array<int, 2>& nodes) { return std::minmax(nodes[0], nodes[1]); };
-  const std::array<int, 2> wanted{a, b};
-  const auto found = std::ranges::lower_bound(
-      edges, wanted, [&](const MeshEdge& edge, const std::array<int, 2>& nodes) {
-        return std::pair<int, int>(key(edge.nodes)) < std::pair<int, int>(key(nodes));
-      });
-  const bool there = found != edges.end() &&
-                     std::pair<int, int>(key(found->nodes)) == std::pair<int, int>(key(wanted));
-  return there ? &*found : nullptr;
+  const auto key = [](const MeshEdge& edge) {
+    return std::pair<int, int>(std::minmax(edge.nodes[0], edge.nodes[1]));
+  };
+  const std::pair<int, int> wanted(std::minmax(a, b));
+  const auto found = std::ranges::lower_bound(edges, wanted, {}, key);
+  return found != edges.end() && key(*found) == wanted ? &*found : nullptr;
 }
 
 }  // namespace apothem
