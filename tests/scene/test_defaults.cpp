@@ -226,8 +226,8 @@ std::vector<Default> population_defaults() {
        "T3"},
       {"/definitions/fill/properties/repeat/properties/every", batches, "/fill/0/repeat/every", 1},
       {"/definitions/import/properties/offset", imported(), "/import/0/offset", {1, 0}},
-      {"/definitions/import/properties/repair", imported(), "/import/0/repair"},
-      {"/definitions/import/properties/faults", imported(), "/import/0/faults"},
+      {"/definitions/import/properties/repair", imported(), "/import/0/repair", nullptr},
+      {"/definitions/import/properties/faults", imported(), "/import/0/faults", nullptr},
       {"/definitions/import/properties/lines", imported(kOpenLines), "/import/0/lines",
        "polygonize"},
   };

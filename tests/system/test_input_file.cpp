@@ -45,7 +45,7 @@ TEST_CASE("named pipes, devices, folders and large files are refused unopened", 
   CHECK(refusal.find("APOTHEM_INPUT_LIMIT") != std::string::npos);
 }
 
-TEST_CASE("every kind of input without end is refused at once", "[input][program]") {
+TEST_CASE("every kind of input without end is refused at once", "[input][program][slow]") {
   const Folder folder;
   const std::string pipe = folder / "pipe", zeros = folder / "zeros.msh";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);

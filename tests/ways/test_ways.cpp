@@ -549,7 +549,7 @@ Json written_out(const Folder& folder, const Json& filled) {
 }  // namespace
 }  // namespace ways
 
-TEST_CASE("one situation said in many ways gives one result", "[ways]") {
+TEST_CASE("one situation said in many ways gives one result", "[ways][slow]") {
   const Folder folder;
   for (const ways::NamedText& scene : ways::scenes()) {
     const Json plain = Json::parse(scene.text);
