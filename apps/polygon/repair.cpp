@@ -66,11 +66,11 @@ void print(const Report& report, const PolygonOptions& options, FILE* to) {
   size_t holes = 0;
   for (const PolygonWithHoles& polygon : report.polygons) holes += polygon.holes.size();
   fmt::print(to,
-             "{}: {} faults, {} left out; {} polygon{} with {} hole{}, {} m^2; Hausdorff distance "
+             "{}: {} fault{}, {} left out; {} polygon{} with {} hole{}, {} m^2; Hausdorff distance "
              "of the simplification {:.3g} m\n",
-             options.file, report.faults.size(), report.left_out, report.polygons.size(),
-             report.polygons.size() == 1 ? "" : "s", holes, holes == 1 ? "" : "s",
-             area_of(report.polygons), report.hausdorff_distance);
+             options.file, report.faults.size(), report.faults.size() == 1 ? "" : "s",
+             report.left_out, report.polygons.size(), report.polygons.size() == 1 ? "" : "s", holes,
+             holes == 1 ? "" : "s", area_of(report.polygons), report.hausdorff_distance);
 }
 
 }  // namespace
