@@ -59,8 +59,7 @@ struct Segment {
 class ExactFront {
  public:
   explicit ExactFront(const Polygon& polygon)
-      : polygon_(polygon),
-        size_(polygon.size()),
+      : size_(polygon.size()),
         planes_(polygon),
         frame_(polygon),
         lines_(frame_.lines()),
@@ -70,6 +69,7 @@ class ExactFront {
                         static_cast<double>(line.offset)});
     }
     std::vector<int> loop;
+    nodes_.reserve(polygon.local_vertices().size());
     for (const Vec2& v : polygon.local_vertices()) nodes_.push_back({v, 0});
     for (int v = 0; v < size_; ++v) {
       loop.push_back(add_vertex(frame_.x(v), frame_.y(v), 0, previous(v, size_), v, v, size_ + v));
@@ -503,7 +503,6 @@ class ExactFront {
     }
   }
 
-  const Polygon& polygon_;
   int size_;
   ExactPlanes planes_;
   FineFrame frame_;

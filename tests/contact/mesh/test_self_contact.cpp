@@ -120,6 +120,7 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
     balance = std::max({balance, sum.force.norm() / size, std::abs(sum.moment) / size});
   }
   CAPTURE(worst, balance, touch, deep);
+  WARN(worst * 1e12);
   CHECK(touch > scaled(200));
   CHECK(deep > scaled(50));
   CHECK(worst < 1e-11);
