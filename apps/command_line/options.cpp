@@ -245,6 +245,7 @@ void add_boolean(CLI::App& app, BooleanOptions& o) {
       ->required();
   sub->add_option("B", o.b, "The other polygon")->type_name("FILE")->required();
   std::vector<std::string> names;
+  names.reserve(std::size(kBooleanOperations));
   for (const NamedOperation& known : kBooleanOperations) names.emplace_back(known.name);
   sub->add_option("OPERATION", o.operation, "What to make of them; difference: A without B")
       ->check(CLI::IsMember(names))

