@@ -69,7 +69,7 @@ class ExactFront {
                         static_cast<double>(line.offset)});
     }
     std::vector<int> loop;
-    nodes_.reserve(polygon.local_vertices().size());
+    loop.reserve(polygon.local_vertices().size());
     for (const Vec2& v : polygon.local_vertices()) nodes_.push_back({v, 0});
     for (int v = 0; v < size_; ++v) {
       loop.push_back(add_vertex(frame_.x(v), frame_.y(v), 0, previous(v, size_), v, v, size_ + v));

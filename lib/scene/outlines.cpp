@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <ranges>
 
 #include "geometry/exact/overlap.hpp"
 #include "geometry/polygon/cyclic.hpp"
@@ -270,7 +269,7 @@ class OutlineMaker {
 
   // Takes outlines out by their numbers.
   void take_out(const std::set<std::int32_t>& numbers) {
-    for (const std::int32_t number : std::views::reverse(numbers)) {
+    for (const std::int32_t number : std::vector(numbers.rbegin(), numbers.rend())) {
       outlines_.erase(outlines_.begin() + number);
     }
   }
