@@ -25,8 +25,4 @@ namespace apothem {
 /// linear in n. `progress` is called after every hundred events and may throw.
 std::optional<SkeletonParts> exact_skeleton(const Polygon& polygon, const Progress& progress);
 
-/// Moves the inner nodes to where the planes of their faces meet, rounded like those of
-/// exact_skeleton. Returns false if a node does not have three faces, which alone determine it.
-bool place_exactly(Skeleton& skeleton, const Polygon& polygon);
-
 }  // namespace apothem

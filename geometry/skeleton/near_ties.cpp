@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/polygon/segment.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
 
 namespace apothem {
@@ -9,12 +10,6 @@ namespace {
 
 constexpr double kNear = 1e-8;      // as a share of the polygon's size
 constexpr double kStraight = 1e-8;  // sine of an angle
-
-double gap(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 side = b - a;
-  const double share = std::clamp(side.dot(p - a) / side.squaredNorm(), 0.0, 1.0);
-  return (a + share * side - p).norm();
-}
 
 }  // namespace
 
@@ -43,7 +38,7 @@ bool has_near_ties(const Skeleton& skeleton, const Polygon& polygon) {
                                        [&](int j) { return nodes[j].point.x() < low; });
          i != order.end() && nodes[*i].point.x() <= high; ++i) {
       if (*i == arc.start || *i == arc.end) continue;
-      if (gap(nodes[*i].point, a, b) <= near) return true;
+      if (nearest_on_segment(nodes[*i].point - a, b - a).distance2 <= near * near) return true;
     }
   }
   return false;

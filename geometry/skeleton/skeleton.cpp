@@ -8,6 +8,7 @@
 #include "geometry/polygon/random_numbers.hpp"
 #include "geometry/skeleton/convex_skeleton.hpp"
 #include "geometry/skeleton/exact_front.hpp"
+#include "geometry/skeleton/exact_nodes.hpp"
 #include "geometry/skeleton/near_ties.hpp"
 #include "geometry/skeleton/polish.hpp"
 #include "geometry/skeleton/skeleton_search.hpp"

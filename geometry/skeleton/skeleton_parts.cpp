@@ -27,8 +27,8 @@ void set_arcs(Skeleton& skeleton) {
   }
 }
 
-}  // namespace
-
+// The nodes of the face of an edge of n, from its edge on, given its other borders. Empty if its
+// borders do not form one loop.
 std::vector<int> face_of(int edge, int n, std::vector<FaceBorder>& borders) {
   std::sort(borders.begin(), borders.end(),
             [](const FaceBorder& p, const FaceBorder& q) { return p.from < q.from; });
@@ -45,6 +45,19 @@ std::vector<int> face_of(int edge, int n, std::vector<FaceBorder>& borders) {
   }
   if (nodes.size() != borders.size() + 1) return {};
   return nodes;
+}
+
+}  // namespace
+
+std::optional<SkeletonParts> joined(std::vector<Skeleton::Node> nodes,
+                                    std::vector<std::vector<FaceBorder>>& borders) {
+  SkeletonParts parts{std::move(nodes), {}};
+  const int n = static_cast<int>(borders.size());
+  for (int f = 0; f < n; ++f) {
+    parts.faces.push_back(face_of(f, n, borders[f]));
+    if (parts.faces.back().empty()) return std::nullopt;
+  }
+  return parts;
 }
 
 Skeleton assemble(SkeletonParts parts) {

@@ -2,6 +2,7 @@
 // construction of the straight skeleton.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/skeleton/skeleton.hpp"
@@ -19,9 +20,10 @@ struct FaceBorder {
   int from, to;
 };
 
-/// The nodes of the face of an edge of n, from its edge on, given its other borders. Empty if its
-/// borders do not form one loop.
-std::vector<int> face_of(int edge, int n, std::vector<FaceBorder>& borders);
+/// The parts with the faces that these borders form: one per edge, by its borders besides the edge
+/// itself. Nothing if those of a face do not form one loop.
+std::optional<SkeletonParts> joined(std::vector<Skeleton::Node> nodes,
+                                    std::vector<std::vector<FaceBorder>>& borders);
 
 /// Derives the arcs and the height of the roof from the nodes and faces. Where two faces do not fit
 /// together, the result has an arc that breaks a law.

@@ -63,12 +63,7 @@ class Wavefront {
       if (++changes_ > kMostChanges * size_ + kMoreChanges) return std::nullopt;
     }
     if (!sound_ || static_cast<int>(nodes_.size()) != total) return std::nullopt;
-    SkeletonParts parts{std::move(nodes_), {}};
-    for (int f = 0; f < size_; ++f) {
-      parts.faces.push_back(face_of(f, size_, borders_[f]));
-      if (parts.faces.back().empty()) return std::nullopt;
-    }
-    return parts;
+    return joined(std::move(nodes_), borders_);
   }
 
  private:

@@ -34,7 +34,7 @@ auto place_of(Values& values, int body) {
 }  // namespace
 
 std::string message_of(const Incompatibility& pair) {
-  return fmt::format("{} {}: {}; {}", text_of(pair.verdict), text_of(pair.with).where, pair.why,
+  return fmt::format("{} {}: {}; {}", text_of(pair.refusal), text_of(pair.with).where, pair.why,
                      pair.instead);
 }
 

@@ -72,7 +72,7 @@ enum class Feature {
 struct FeatureText {
   Feature feature;
   std::string_view what;   ///< the keys that ask for it, in the documentation
-  std::string_view where;  ///< "in", "with" or "for" it, behind the verdict on another feature
+  std::string_view where;  ///< "in", "with" or "for" it, behind the refusal on another feature
 };
 
 /// In the order of Feature. A text that no row of kIncompatible needs is left empty.
@@ -132,17 +132,17 @@ constexpr const FeatureText& text_of(Feature feature) {
 
 /// Whether a combination is refused because nothing could be computed for it, or because the
 /// computation has not been written.
-enum class Verdict { has_no_meaning, not_supported_yet };
+enum class Refusal { has_no_meaning, not_supported_yet };
 
-constexpr std::string_view text_of(Verdict verdict) {
-  return verdict == Verdict::has_no_meaning ? "has no meaning" : "is not supported yet";
+constexpr std::string_view text_of(Refusal refusal) {
+  return refusal == Refusal::has_no_meaning ? "has no meaning" : "is not supported yet";
 }
 
 /// Two features that a scene must not use together. The error stands at the value of `asked`.
 struct Incompatibility {
   Feature asked;
   Feature with;
-  Verdict verdict;
+  Refusal refusal;
   std::string_view why;
   std::string_view instead;  ///< what would be right
 };
@@ -150,7 +150,7 @@ struct Incompatibility {
 /// The first row that fits a scene is the one that the user reads.
 inline constexpr auto kIncompatible = [] {
   using enum Feature;
-  using enum Verdict;
+  using enum Refusal;
   return std::to_array<Incompatibility>(
       {// The contact law.
        {field, area_potential, has_no_meaning, "the area potential has one field only",

@@ -276,7 +276,7 @@ std::string markdown() {
       "| feature | verdict | combination | reason | what to do instead |\n"
       "| --- | --- | --- | --- | --- |\n";
   for (const Incompatibility& pair : kIncompatible) {
-    for (const std::string_view cell : {text_of(pair.asked).what, text_of(pair.verdict),
+    for (const std::string_view cell : {text_of(pair.asked).what, text_of(pair.refusal),
                                         text_of(pair.with).where, pair.why, pair.instead}) {
       text += "| " + std::string(cell) + " ";
     }
@@ -308,7 +308,7 @@ TEST_CASE("an unsupported pair is called so, with a remedy", "[scene]") {
     const std::string message = message_of(pair);
     INFO(message);
     CHECK((message.find("not supported yet") != std::string::npos) ==
-          (pair.verdict == Verdict::not_supported_yet));
+          (pair.refusal == Refusal::not_supported_yet));
     CHECK(message.ends_with("; " + std::string(pair.instead)));
     // It is a row of a table in Markdown, too.
     CHECK(message.find('|') == std::string::npos);

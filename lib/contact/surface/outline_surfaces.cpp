@@ -129,13 +129,10 @@ void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeI
   std::vector<std::vector<Vec2>> rings;
   std::vector<NodeIndex> nodes;
   for (const BoundaryLoop& loop : boundary.loops) {
-    std::vector<Vec2>& ring = rings.emplace_back();
+    rings.push_back(mesh.places(loop.nodes));
     nodes.clear();
-    for (const int n : loop.nodes) {
-      ring.push_back(mesh.nodes[n]);
-      nodes.push_back(first_node + n);
-    }
-    add_loop(ring, nodes);
+    for (const int n : loop.nodes) nodes.push_back(first_node + n);
+    add_loop(rings.back(), nodes);
   }
   double r, reach;
   if (reference) {
