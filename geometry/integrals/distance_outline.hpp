@@ -162,9 +162,12 @@ class DistanceOutline {
   // A sine above this value has the right sign whatever the round-off.
   static constexpr double kSure = 0x1p-40;
 
-  // The side of the line of edge i that vertex v is on: 1 in front, 0 on the line, -1 behind.
+  // The side of the line of edge i that vertex v is on: 1 in front, 0 on the line, -1 behind. Where
+  // vertices became one, a vertex may have come to lie on the line. Then the last one of them, in
+  // which the edge begins, tells where it was.
   [[nodiscard]] int side(int i, int v) const {
-    return side(vertex_[i], vertex_[after(i)], vertex_[v]);
+    const int side_now = side(vertex_[i], vertex_[after(i)], vertex_[v]);
+    return side_now != 0 || v == i ? side_now : side(last_[i], vertex_[after(i)], vertex_[v]);
   }
   // The side of the line from p to q that r is on.
   static int side(const Point& p, const Point& q, const Point& r) {
@@ -179,9 +182,9 @@ class DistanceOutline {
   // outline turns back exactly onto itself. Then the last one of them tells whether the vertex is
   // a tip or the end of a slit.
   [[nodiscard]] int turn_at(int i) const {
-    const int turn = side(before(i), after(i));
+    const int turn = side(vertex_[before(i)], vertex_[i], vertex_[after(i)]);
     const bool back = turn == 0 && dot(normal_[before(i)], normal_[i]) < 0;
-    return back ? side(last_[before(i)], vertex_[i], vertex_[after(i)]) : turn;
+    return back ? side(before(i), after(i)) : turn;
   }
   // Whether a part of edge j is in front of the line of edge i.
   [[nodiscard]] bool in_front(int i, int j) const {

@@ -120,6 +120,23 @@ TEST_CASE("vertices that become one leave the end of a slit what it is", "[near-
         Approx(test::edge(a, plain, choice).volume.energy).epsilon(1e-8));
 }
 
+TEST_CASE("a reflex vertex beside an edge that begins in two merged vertices stays beside it",
+          "[near-degenerate]") {
+  // From the first of the two vertices the edge would lead through the reflex vertex, which is
+  // 5e-27 beside it.
+  const Polygon polygon({{1.6000000000000001, 1.6000000000000001},
+                         {1.6000000000000003, 1.6000000000000003},
+                         {1.6000000000000001, 2.4000000000000004},
+                         {1.6000000000000001, 2.3999999999831729},
+                         {1.5999999999089629, 2.4000000000052788},
+                         {0, 2.4000000000000004}});
+  for (const double length : {.12, 2.4}) {
+    const PotentialChoice choice = choice_of(Field::distance, Reference::length, length);
+    const double exact = exact_method(polygon, polygon, choice).volume.energy;
+    CHECK(test::edge(polygon, polygon, choice).volume.energy == Approx(exact).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near-degenerate]") {
   samples::Random random(90);  // the same cases always: the bound of the energy is a measured one
   int touching = 0, refused = 0;
