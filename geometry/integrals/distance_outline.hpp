@@ -60,9 +60,9 @@ class DistanceOutline {
     const auto [x0, x1] = std::minmax_element(field.x, field.x + field.size);
     const auto [y0, y1] = std::minmax_element(field.y, field.y + field.size);
     const Real size = std::max(Real(*x1 - *x0), Real(*y1 - *y0));
-    const Real same = 8 * std::numeric_limits<Real>::epsilon() * size;
+    same_ = 8 * std::numeric_limits<Real>::epsilon() * size;
     const auto near = [&](const Point& p, const Point& q) {
-      return abs(p.x - q.x) <= same && abs(p.y - q.y) <= same;
+      return abs(p.x - q.x) <= same_ && abs(p.y - q.y) <= same_;
     };
     vertex_.clear(), last_.clear();
     for (int i = 0; i < field.size; ++i) {
@@ -74,6 +74,7 @@ class DistanceOutline {
       }
     }
     while (vertex_.size() > 1 && near(vertex_.back(), vertex_.front())) {
+      vertex_.front() = vertex_.back();
       vertex_.pop_back(), last_.pop_back();
     }
     n_ = static_cast<int>(vertex_.size());
@@ -116,7 +117,9 @@ class DistanceOutline {
     using std::abs;
     const Real reach = abs(arm.x) + abs(arm.y);
     const Real h = dot(normal_[i], arm);
-    if (abs(h) > kSure * reach) return h > 0 ? h : Real(0);
+    // Where vertices became one, the vertex may have come behind the line or onto it.
+    if (h > kSure * reach) return h;
+    if (h < -kSure * reach - 2 * same_) return 0;
     const Real least = std::numeric_limits<Real>::epsilon() * std::numeric_limits<Real>::epsilon();
     return side(i, v) > 0 ? std::max(h, Real(least * reach)) : Real(0);
   }
@@ -138,11 +141,15 @@ class DistanceOutline {
     const Point at_start = vertex_[a] - vertex_[after(b)];
     const bool end_of_a = next || (!previous && dot(at_end, at_end) <= dot(at_start, at_start));
     const Point& gap = end_of_a ? at_end : at_start;
-    // With the coordinate u along edge a, from that end, the height is
-    // (n_b . gap - u sin) / (1 - cos), and the coordinate along edge b is sum - u.
-    const Real sine = cross(normal_[a], normal_[b]);
+    // At a tip of hardly any width, round-off must not turn its sides away from each other.
+    constexpr double kLeast = 0x1p-200;
+    Real sine = cross(normal_[a], normal_[b]);
+    if (next) sine = std::max(sine, Real(kLeast));
+    if (previous) sine = std::min(sine, Real(-kLeast));
     const Real cosine = dot(normal_[a], normal_[b]);
     if (cosine > 0 && sine == 0) return false;
+    // With the coordinate u along edge a, from that end, the height is
+    // (n_b . gap - u sin) / (1 - cos), and the coordinate along edge b is sum - u.
     const Real ratio = cosine > 0 ? Real((1 + cosine) / sine) : Real(sine / (1 - cosine));
     const Real over = dot(normal_[b], gap);
     const Real start = cosine > 0 ? Real(over / sine * ratio) : Real(over / (1 - cosine));
@@ -163,11 +170,10 @@ class DistanceOutline {
   static constexpr double kSure = 0x1p-40;
 
   // The side of the line of edge i that vertex v is on: 1 in front, 0 on the line, -1 behind. Where
-  // vertices became one, a vertex may have come to lie on the line. Then the last one of them, in
-  // which the edge begins, tells where it was.
+  // vertices became one, the edge begins in the last one of them: otherwise a vertex beside it
+  // could come to lie on it, or behind it.
   [[nodiscard]] int side(int i, int v) const {
-    const int side_now = side(vertex_[i], vertex_[after(i)], vertex_[v]);
-    return side_now != 0 || v == i ? side_now : side(last_[i], vertex_[after(i)], vertex_[v]);
+    return v == i ? 0 : side(last_[i], vertex_[after(i)], vertex_[v]);
   }
   // The side of the line from p to q that r is on.
   static int side(const Point& p, const Point& q, const Point& r) {
@@ -178,13 +184,14 @@ class DistanceOutline {
       return (area > 0) - (area < 0);
     }
   }
-  // The turn at vertex i. Vertices that became one may have bent the edge before it so that the
-  // outline turns back exactly onto itself. Then the last one of them tells whether the vertex is
-  // a tip or the end of a slit.
+  // The turn at vertex i. Where the outline turns back, vertices that became one may have bent one
+  // edge across the other. Then the far end of the shorter edge tells a tip from the end of a slit:
+  // it lies in front of the longer edge, or behind it.
   [[nodiscard]] int turn_at(int i) const {
-    const int turn = side(vertex_[before(i)], vertex_[i], vertex_[after(i)]);
-    const bool back = turn == 0 && dot(normal_[before(i)], normal_[i]) < 0;
-    return back ? side(before(i), after(i)) : turn;
+    const int b = before(i), a = after(i);
+    if (dot(normal_[b], normal_[i]) >= 0) return side(vertex_[b], vertex_[i], vertex_[a]);
+    return length_[b] < length_[i] ? side(last_[i], vertex_[a], last_[b])
+                                   : side(last_[b], vertex_[i], vertex_[a]);
   }
   // Whether a part of edge j is in front of the line of edge i.
   [[nodiscard]] bool in_front(int i, int j) const {
@@ -207,6 +214,7 @@ class DistanceOutline {
 
   int n_ = 0;
   std::vector<Point> vertex_, normal_;
+  Real same_{};              // distance within which vertices are one
   std::vector<Point> last_;  // of the vertices that have become this one
   std::vector<Real> length_;
   std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
