@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geometry/polygon/ring_links.hpp"
 #include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/skeleton/roof.hpp"
@@ -28,10 +29,17 @@ struct PlacedPotential {
   double radius = 0;                     ///< largest distance of a vertex from `reference`, m, or 0
   double steepest = 0;                   ///< largest |g_i|, 1/m, or 0 if it is not known
   const BoundaryLayer* layer = nullptr;  ///< boundary layer, if it is not convex
+  const RingLinks* links = nullptr;      ///< neighbours of its vertices if it has holes, or null
   /// Position of the inner nodes of the roof in the frame: they are rotated by the angle with this
   /// cosine and sine, and then moved by `shift`, m.
   double cosine = 1, sine = 0;
   Vec2 shift = Vec2::Zero();
+
+  /// The number of the entry with the end of edge e.
+  [[nodiscard]] int end(int e) const { return links ? links->after[static_cast<size_t>(e)] : e + 1; }
+  /// The vertex or the edge after i, or before it.
+  [[nodiscard]] int next(int i) const { return apothem::next(links, i, size); }
+  [[nodiscard]] int previous(int i) const { return apothem::previous(links, i, size); }
 
   /// True if phi is the lower envelope of the linear functions of the edges.
   [[nodiscard]] bool convex() const { return !roof && !distance; }
@@ -49,9 +57,10 @@ inline Box box_of(const PlacedPotential& p, const Vec2& shift) {
 inline bool encloses(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
   bool inside = false;
   for (int k = 0; k < p.size; ++k) {
-    const double y0 = p.y[k] + shift.y() - point.y(), y1 = p.y[k + 1] + shift.y() - point.y();
+    const int end = p.end(k);
+    const double y0 = p.y[k] + shift.y() - point.y(), y1 = p.y[end] + shift.y() - point.y();
     if ((y0 > 0) == (y1 > 0)) continue;
-    const double x0 = p.x[k] + shift.x() - point.x(), x1 = p.x[k + 1] + shift.x() - point.x();
+    const double x0 = p.x[k] + shift.x() - point.x(), x1 = p.x[end] + shift.x() - point.x();
     if ((x0 * y1 - x1 * y0 > 0) == (y1 > y0)) inside = !inside;
   }
   return inside;

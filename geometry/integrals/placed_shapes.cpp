@@ -27,8 +27,8 @@ void PlacedShapes::reserve(size_t shapes, size_t vertices) {
 
 int PlacedShapes::add(const Potential& potential) {
   const int n = potential.size();
-  const bool convex = !potential.layer;
-  const int before = convex ? 0 : 1;
+  const bool layered = potential.layer.has_value();
+  const int before = layered ? 1 : 0;
   Shape shape{
       .placed = placed_.size() + static_cast<size_t>(before),
       .stride = before + n + 1,
@@ -37,7 +37,8 @@ int PlacedShapes::add(const Potential& potential) {
       .slope = potential.steepest,
       .roof = potential.roof ? &*potential.roof : nullptr,
       .distance = potential.distance ? &*potential.distance : nullptr,
-      .layer = convex ? nullptr : &*potential.layer,
+      .layer = layered ? &*potential.layer : nullptr,
+      .links = potential.links ? &*potential.links : nullptr,
       .capped = potential.capped(),
       .depth_ratio = apothem::depth_ratio(potential),
       .top_radius = potential.top_points.front().norm(),
@@ -50,7 +51,7 @@ int PlacedShapes::add(const Potential& potential) {
   }
   shapes_.push_back(shape);
   placed_.resize(placed_.size() + 4 * static_cast<size_t>(shape.stride) +
-                 (convex ? 0 : kReadBehind));
+                 (layered ? kReadBehind : 0));
   boxes_.emplace_back();
   return size() - 1;
 }

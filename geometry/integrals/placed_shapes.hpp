@@ -53,6 +53,7 @@ class PlacedShapes {
             .radius = s.radius,
             .steepest = s.slope,
             .layer = s.layer,
+            .links = s.links,
             .cosine = s.cosine,
             .sine = s.sine,
             .shift = Vec2::Zero()};
@@ -101,6 +102,7 @@ class PlacedShapes {
     const Roof* roof;
     const DistanceField* distance;
     const BoundaryLayer* layer;
+    const RingLinks* links;
     bool capped;
     double depth_ratio;
     double top_radius;  // distance of the highest point from the reference point

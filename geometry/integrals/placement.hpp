@@ -40,6 +40,7 @@ struct Placement {
             .radius = radius,
             .steepest = potential.steepest,
             .layer = potential.layer ? &*potential.layer : nullptr,
+            .links = potential.links ? &*potential.links : nullptr,
             .shift = polygon.origin() - origin};
   }
   Placement(const Placement&) = delete;

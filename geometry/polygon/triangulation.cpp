@@ -22,7 +22,7 @@ using Triangulation =
                                                CGAL::No_constraint_intersection_tag>;
 
 // Inserts a ring whose vertices have the numbers `first`, `first` + 1 and so on.
-void insert(Triangulation& triangulation, const std::vector<Vec2>& ring, int first) {
+void insert(Triangulation& triangulation, std::span<const Vec2> ring, int first) {
   std::vector<Triangulation::Vertex_handle> vertices;
   for (size_t i = 0; i < ring.size(); ++i) {
     const size_t before = triangulation.number_of_vertices();
@@ -84,7 +84,9 @@ std::vector<Triangle> triangles_of(Triangulation& triangulation) {
 
 std::vector<Triangle> triangulate(const Polygon& polygon) {
   Triangulation triangulation;
-  insert(triangulation, polygon.vertices(), 0);
+  for (int k = 0; k < polygon.rings(); ++k) {
+    insert(triangulation, polygon.ring(k), polygon.ring_start(k));
+  }
   return triangles_of(triangulation);
 }
 

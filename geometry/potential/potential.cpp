@@ -119,6 +119,7 @@ Skeleton skeleton_of(const Polygon& polygon, const SkeletonSource& source) {
 Potential sloped_lines(const Polygon& polygon, double reference) {
   Potential potential;
   potential.vertices = polygon.local_vertices();
+  if (polygon.links()) potential.links = *polygon.links();
   potential.gradients = inward_normals(polygon);
   for (Vec2& g : potential.gradients) g /= reference;
   potential.steepest = 1 / reference;

@@ -18,7 +18,7 @@
 #include "geometry/polygon/polygon.hpp"
 #include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
-#include "geometry/potential/rare.hpp"
+#include "geometry/polygon/rare.hpp"
 #include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
@@ -28,6 +28,7 @@ namespace apothem {
 struct Potential {
   std::vector<Vec2> vertices;    ///< p_i relative to an origin that the owner chooses, m
   std::vector<Vec2> gradients;   ///< g_i, 1/m
+  Rare<RingLinks> links;         ///< neighbours of the vertices of a polygon with holes
   double top = 0;                ///< maximum of phi if it is not limited to 1
   std::vector<Vec2> top_points;  ///< where phi is highest: points and ends of ridges, m
   double steepest = 0;           ///< largest |g_i|, 1/m
