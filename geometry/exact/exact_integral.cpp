@@ -20,13 +20,15 @@ struct Moments {
   WideVec centroid;
 };
 
-Moments moments(const std::vector<WideVec>& v) {
+// The moments of a polygon with the vertices v.
+Moments moments(const Polygon& polygon, const std::vector<WideVec>& v) {
   Wide twice_area = 0;
   WideVec first(0, 0);
-  for (size_t i = 2; i < v.size(); ++i) {
-    const Wide twice = cross<Wide>(v[i - 1] - v[0], v[i] - v[0]);
+  for (int i = 0; i < polygon.size(); ++i) {
+    const WideVec &p = v[i], &q = v[polygon.next(i)];
+    const Wide twice = cross<Wide>(p - v[0], q - v[0]);
     twice_area += twice;
-    first += twice * (v[i - 1] + v[i] - 2 * v[0]);
+    first += twice * (p + q - 2 * v[0]);
   }
   return {twice_area / 2, v[0] + first / (3 * twice_area)};
 }
@@ -81,13 +83,14 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
   const bool distance = choice.kind == PotentialChoice::Kind::distance;
   std::vector<WideVec> v;
   for (const Vec2& p : polygon.vertices()) v.push_back(widened(p) - widened(origin));
-  const auto [area, centroid] = moments(v);
+  const auto [area, centroid] = moments(polygon, v);
 
   // The gradients are inward unit normals for the distance potential. For the area potential they
   // have the length 3 / altitude = 3 length / (2 area).
   Envelope<Wide> phi{{}, false, centroid};
-  for (size_t i = 0; i < v.size(); ++i) {
-    const WideVec d = after(v, i) - v[i];
+  phi.links = polygon.links();
+  for (int i = 0; i < polygon.size(); ++i) {
+    const WideVec d = v[polygon.next(i)] - v[i];
     const Wide length = distance ? sqrt(Wide(d.squaredNorm())) : Wide(2 * area / 3);
     const WideVec gradient(-d.y() / length, d.x() / length);
     phi.lines.push_back({gradient, -gradient.dot(v[i])});

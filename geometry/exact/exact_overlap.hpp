@@ -16,14 +16,15 @@ namespace apothem::overlap_detail {
 
 using namespace lower_envelope;
 
-/// A component of the overlap.
+/// A ring of the boundary of the overlap. All integrals over the overlap are sums of those over its
+/// rings, in which those over clockwise rings are negative.
 template <class Real>
 struct Region {
-  std::vector<Vec<Real>> vertices;  ///< vertices, counter-clockwise
+  std::vector<Vec<Real>> vertices;  ///< vertices, counter-clockwise; clockwise around a hole
   std::vector<OverlapEdge> edges;   ///< input edges that its edges lie on; empty if not known
 };
 
-/// The components of the overlap by exact constructions, with coordinates relative to `origin` and
+/// The rings of the overlap by exact constructions, with coordinates relative to `origin` and
 /// rounded to Real, which is double or cpp_bin_float_100.
 template <class Real>
 std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
@@ -43,6 +44,7 @@ struct Envelope {
   const DistanceField* distance = nullptr;  ///< distance field, or null
   Real slope = 0;                           ///< inverse of the distance field's reference length
   std::vector<Real> gx{}, gy{};             ///< gradients of `lines`, for a distance field
+  const RingLinks* links = nullptr;         ///< neighbours of the vertices if there are holes
 
   /// The largest slope of `lines`.
   [[nodiscard]] Real steepest() const {
@@ -68,10 +70,10 @@ struct Envelope {
   /// The distance field with its coordinates.
   [[nodiscard]] PlacedDistance<Real> placed_distance() const {
     return {static_cast<int>(x.size()), x.data(), y.data(), gx.data(), gy.data(), slope,
-            &distance->corners,         capped};
+            &distance->corners,         capped,   links};
   }
 
-  /// The integral of phi dA over a counter-clockwise polygon.
+  /// The integral of phi dA over a counter-clockwise polygon; minus that over a clockwise one.
   [[nodiscard]] Real volume(const std::vector<Vec<Real>>& polygon) const {
     if (distance) {
       std::vector<Real> px, py;
@@ -173,7 +175,7 @@ class EdgeTrace {
   DistanceTrace<Real> distance_;
 };
 
-/// Evaluates Eq. 8 on the components of the overlap and, if `with_energy`, the energy.
+/// Evaluates Eq. 8 on the rings of the overlap and, if `with_energy`, the energy.
 template <class Real>
 PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
                      const Envelope<Real>& b, bool with_energy = true) {

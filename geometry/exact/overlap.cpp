@@ -21,29 +21,39 @@ using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Rational = Exact::Exact_kernel::FT;
 
 template <class Kernel>
-CGAL::Polygon_2<Kernel> cgal(const Polygon& polygon) {
+CGAL::Polygon_2<Kernel> cgal(std::span<const Vec2> ring) {
   CGAL::Polygon_2<Kernel> result;
-  for (const Vec2& v : polygon.vertices()) result.push_back({v.x(), v.y()});
+  for (const Vec2& v : ring) result.push_back({v.x(), v.y()});
+  return result;
+}
+template <class Kernel>
+CGAL::Polygon_with_holes_2<Kernel> cgal_with_holes(const Polygon& polygon) {
+  CGAL::Polygon_with_holes_2<Kernel> result(cgal<Kernel>(polygon.outer_ring()));
+  for (int k = 1; k < polygon.rings(); ++k) result.add_hole(cgal<Kernel>(polygon.ring(k)));
   return result;
 }
 
-// The outer boundaries of the overlap. The overlap of two simple polygons has no holes. CGAL's
-// result is regularised: it contains no isolated common points and no common edges without area.
+// The components of the overlap. CGAL's result is regularised: it contains no isolated common
+// points and no common edges without area.
 template <class Kernel>
-std::vector<CGAL::Polygon_2<Kernel>> intersection(const CGAL::Polygon_2<Kernel>& a,
-                                                  const CGAL::Polygon_2<Kernel>& b) {
+std::vector<CGAL::Polygon_with_holes_2<Kernel>> intersection(const Polygon& a, const Polygon& b) {
   std::vector<CGAL::Polygon_with_holes_2<Kernel>> parts;
-  CGAL::intersection(a, b, std::back_inserter(parts), CGAL::Tag_false());
-  std::vector<CGAL::Polygon_2<Kernel>> outlines;
-  for (auto& part : parts) outlines.push_back(std::move(part.outer_boundary()));
-  return outlines;
+  if (a.has_holes() || b.has_holes()) {
+    CGAL::intersection(cgal_with_holes<Kernel>(a), cgal_with_holes<Kernel>(b),
+                       std::back_inserter(parts), CGAL::Tag_false());
+  } else {
+    CGAL::intersection(cgal<Kernel>(a.outer_ring()), cgal<Kernel>(b.outer_ring()),
+                       std::back_inserter(parts), CGAL::Tag_false());
+  }
+  return parts;
 }
 
 // Finds the edge of one input polygon that an edge of the overlap lies on.
 class Owner {
  public:
-  Owner(const Polygon& polygon, const CGAL::Polygon_2<Exact>& exact)
-      : polygon_(polygon), exact_(exact) {}
+  explicit Owner(const Polygon& polygon) : polygon_(polygon) {
+    for (const Vec2& v : polygon.vertices()) exact_.emplace_back(v.x(), v.y());
+  }
 
   // Finds the edges that interval arithmetic cannot exclude.
   void find_candidates(const Exact::Point_2& p, const Exact::Point_2& q) {
@@ -75,7 +85,7 @@ class Owner {
            point.ymin() <= box.y1;
   }
   [[nodiscard]] const Exact::Point_2& start(int i) const { return exact_[i]; }
-  [[nodiscard]] const Exact::Point_2& end(int i) const { return exact_[next(i, polygon_.size())]; }
+  [[nodiscard]] const Exact::Point_2& end(int i) const { return exact_[polygon_.next(i)]; }
   [[nodiscard]] bool perhaps_on_line(int i, const Exact::Point_2& p) const {
     const CGAL::Protect_FPU_rounding<> upward;
     return CGAL::possibly(Exact::Approximate_kernel().orientation_2_object()(
@@ -89,23 +99,23 @@ class Owner {
   }
 
   const Polygon& polygon_;
-  const CGAL::Polygon_2<Exact>& exact_;
+  std::vector<Exact::Point_2> exact_;
   std::vector<int> candidates_;
 };
 
-struct ExactRegion {
+struct ExactRing {
   CGAL::Polygon_2<Exact> outline;
   std::vector<OverlapEdge> edges;
 };
+// A component of the overlap: its outer ring, and then its holes.
+using ExactRegion = std::vector<ExactRing>;
 
 std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
   std::vector<ExactRegion> regions;
   if (apart(bounding_box(a), bounding_box(b))) return regions;
-  const CGAL::Polygon_2<Exact> exact_a = cgal<Exact>(a);
-  const CGAL::Polygon_2<Exact> exact_b = cgal<Exact>(b);
-  Owner of_a(a, exact_a);
-  Owner of_b(b, exact_b);
-  for (CGAL::Polygon_2<Exact>& outline : intersection(exact_a, exact_b)) {
+  Owner of_a(a);
+  Owner of_b(b);
+  const auto owned = [&](CGAL::Polygon_2<Exact>& outline) -> ExactRing {
     std::vector<OverlapEdge> edges;
     for (size_t i = 0; i < outline.size(); ++i) {
       const Exact::Point_2& p = outline[i];
@@ -116,7 +126,12 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
       const bool certain = of_a.candidates() + of_b.candidates() == 1;
       edges.push_back({of_a.choose(p, q, certain), of_b.choose(p, q, certain)});
     }
-    regions.push_back({std::move(outline), std::move(edges)});
+    return {std::move(outline), std::move(edges)};
+  };
+  for (CGAL::Polygon_with_holes_2<Exact>& part : intersection<Exact>(a, b)) {
+    ExactRegion& region = regions.emplace_back();
+    region.push_back(owned(part.outer_boundary()));
+    for (CGAL::Polygon_2<Exact>& hole : part.holes()) region.push_back(owned(hole));
   }
   return regions;
 }
@@ -137,42 +152,64 @@ Real rounded(Rational x) {
 }
 
 template <class Real>
-std::vector<Region<Real>> rounded(std::vector<ExactRegion> exact, const Vec2& origin) {
+Region<Real> rounded(ExactRing ring, const Vec2& origin) {
   const Rational x0(origin.x());
   const Rational y0(origin.y());
-  std::vector<Region<Real>> regions;
-  for (ExactRegion& region : exact) {
-    std::vector<Vec<Real>> vertices;
-    for (const Exact::Point_2& point : region.outline) {
-      const auto& p = CGAL::exact(point);
-      vertices.emplace_back(rounded<Real>(p.x() - x0), rounded<Real>(p.y() - y0));
-    }
-    regions.push_back({std::move(vertices), std::move(region.edges)});
+  std::vector<Vec<Real>> vertices;
+  for (const Exact::Point_2& point : ring.outline) {
+    const auto& p = CGAL::exact(point);
+    vertices.emplace_back(rounded<Real>(p.x() - x0), rounded<Real>(p.y() - y0));
   }
-  return regions;
+  return {std::move(vertices), std::move(ring.edges)};
+}
+
+// The rings of all components.
+template <class Real>
+std::vector<Region<Real>> rounded(std::vector<ExactRegion> exact, const Vec2& origin) {
+  std::vector<Region<Real>> rings;
+  for (ExactRegion& region : exact) {
+    for (ExactRing& ring : region) rings.push_back(rounded<Real>(std::move(ring), origin));
+  }
+  return rings;
 }
 
 // The overlap with inexact constructions, as it is usually written: in world coordinates, and with
 // no protection against errors except this exception handler.
-std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
+std::vector<OverlapPolygon> inexact_overlap(const Polygon& a, const Polygon& b,
                                             const Vec2& origin) {
-  std::vector<Region<double>> regions;
+  std::vector<OverlapPolygon> polygons;
+  const auto relative = [&](const CGAL::Polygon_2<Inexact>& ring) -> OverlapRing {
+    std::vector<Vec2> vertices;
+    for (const auto& p : ring) vertices.emplace_back(p.x() - origin.x(), p.y() - origin.y());
+    return {std::move(vertices), {}};
+  };
   try {
-    for (const auto& outline : intersection(cgal<Inexact>(a), cgal<Inexact>(b))) {
+    for (const auto& part : intersection<Inexact>(a, b)) {
+      const auto& outline = part.outer_boundary();
       if (outline.size() < 3 || !(outline.area() > 0)) continue;
-      std::vector<Vec2> vertices;
-      for (const auto& p : outline) vertices.emplace_back(p.x() - origin.x(), p.y() - origin.y());
-      regions.push_back({std::move(vertices), {}});
+      polygons.push_back({relative(outline)});
+      for (const auto& hole : part.holes()) polygons.back().holes.push_back(relative(hole));
     }
   } catch (const std::exception& error) {
     throw std::runtime_error(std::string("inexact overlap: ") + error.what());
   }
-  return regions;
+  return polygons;
+}
+
+// The rings of overlap polygons.
+std::vector<Region<double>> rings_of(const std::vector<OverlapPolygon>& overlap) {
+  std::vector<Region<double>> rings;
+  for (const OverlapPolygon& polygon : overlap) {
+    rings.push_back({polygon.vertices, polygon.edges});
+    for (const OverlapRing& hole : polygon.holes) rings.push_back({hole.vertices, hole.edges});
+  }
+  return rings;
 }
 
 Envelope<double> envelope(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
   Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid};
   phi.reference += polygon.origin() - origin;
+  phi.links = polygon.links();
   for (int i = 0; i < potential.size(); ++i) {
     const Vec2& gradient = potential.gradients[i];
     phi.lines.push_back({gradient, -gradient.dot(polygon[i] - origin)});
@@ -210,41 +247,41 @@ overlap_detail::exact_regions(const Polygon&, const Polygon&, const Vec2&);
 
 std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b, const Vec2& origin,
                                              Arithmetic arithmetic) {
+  if (arithmetic == Arithmetic::inexact) return inexact_overlap(a, b, origin);
   std::vector<OverlapPolygon> polygons;
-  for (Region<double>& region : arithmetic == Arithmetic::exact
-                                    ? exact_regions<double>(a, b, origin)
-                                    : inexact_regions(a, b, origin)) {
-    polygons.push_back({std::move(region.vertices), std::move(region.edges)});
+  const auto ring = [&](ExactRing& exact) -> OverlapRing {
+    Region<double> region = rounded<double>(std::move(exact), origin);
+    return {std::move(region.vertices), std::move(region.edges)};
+  };
+  for (ExactRegion& region : exact_overlap(a, b)) {
+    polygons.push_back({ring(region.front())});
+    for (size_t k = 1; k < region.size(); ++k) polygons.back().holes.push_back(ring(region[k]));
   }
   return polygons;
 }
 
 PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                           const Potential& potential_b, Arithmetic arithmetic) {
-  std::vector<Region<double>> regions;
+  std::vector<Region<double>> rings;
   Vec2 origin = a.origin();
   if (arithmetic == Arithmetic::exact) {
     std::vector<ExactRegion> exact = exact_overlap(a, b);
     if (exact.empty()) return {};
     // The origin is a corner of the overlap, so that the terms of the sums are as small as it.
-    const Exact::Point_2& corner = exact[0].outline[0];
+    const Exact::Point_2& corner = exact[0][0].outline[0];
     origin = {CGAL::to_double(corner.x()), CGAL::to_double(corner.y())};
-    regions = rounded<double>(std::move(exact), origin);
+    rings = rounded<double>(std::move(exact), origin);
   } else {
-    regions = inexact_regions(a, b, origin);
+    rings = rings_of(inexact_overlap(a, b, origin));
   }
-  return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin));
+  return integrate(rings, envelope(a, potential_a, origin), envelope(b, potential_b, origin));
 }
 
 PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const Vec2& origin,
                               const Polygon& a, const Potential& potential_a, const Polygon& b,
                               const Potential& potential_b) {
-  std::vector<Region<double>> regions;
-  for (const OverlapPolygon& polygon : overlap) {
-    regions.push_back({polygon.vertices, polygon.edges});
-  }
-  return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin),
-                   false)
+  return integrate(rings_of(overlap), envelope(a, potential_a, origin),
+                   envelope(b, potential_b, origin), false)
       .integral;
 }
 

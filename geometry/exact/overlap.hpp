@@ -19,14 +19,20 @@ struct OverlapEdge {
   int edge_of_b;  ///< edge of b that it lies on, or -1
 };
 
-/// One component of the overlap, counter-clockwise and without holes. Edge i starts at vertex i.
-struct OverlapPolygon {
+/// A ring of the boundary of the overlap. Edge i starts at vertex i.
+struct OverlapRing {
   std::vector<Vec2> vertices;      ///< vertices relative to a given origin, rounded only once, m
   std::vector<OverlapEdge> edges;  ///< exact; empty with inexact constructions
 };
 
-/// Returns the components of the overlap of two simple polygons that have a positive area, in
-/// coordinates relative to `origin`. Throws std::runtime_error if inexact constructions fail.
+/// One component of the overlap: its outer ring, counter-clockwise, and its holes, clockwise. Two
+/// polygons without holes have an overlap without holes.
+struct OverlapPolygon : OverlapRing {
+  std::vector<OverlapRing> holes{};
+};
+
+/// Returns the components of the overlap of two polygons that have a positive area, in coordinates
+/// relative to `origin`. Throws std::runtime_error if inexact constructions fail.
 std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b, const Vec2& origin,
                                              Arithmetic arithmetic = Arithmetic::exact);
 

@@ -65,18 +65,27 @@ class DistanceOutline {
       return abs(p.x - q.x) <= same_ && abs(p.y - q.y) <= same_;
     };
     vertex_.clear(), last_.clear();
-    for (int i = 0; i < field.size; ++i) {
-      const Point p{field.x[i], field.y[i]};
-      if (vertex_.empty() || !near(p, vertex_.back())) {
-        vertex_.push_back(p), last_.push_back(p);
-      } else {
-        last_.back() = p;
+    links_ = {};
+    for_each_ring(field.links, field.size, [&](int begin, int end) {
+      const size_t first = vertex_.size();
+      for (int i = begin; i < end; ++i) {
+        const Point p{field.x[i], field.y[i]};
+        if (vertex_.size() == first || !near(p, vertex_.back())) {
+          vertex_.push_back(p), last_.push_back(p);
+        } else {
+          last_.back() = p;
+        }
       }
-    }
-    while (vertex_.size() > 1 && near(vertex_.back(), vertex_.front())) {
-      vertex_.front() = vertex_.back();
-      vertex_.pop_back(), last_.pop_back();
-    }
+      while (vertex_.size() > first + 1 && near(vertex_.back(), vertex_[first])) {
+        vertex_[first] = vertex_.back();
+        vertex_.pop_back(), last_.pop_back();
+      }
+      if (!field.links) return;
+      // A hole whose vertices have become one or two has no inside.
+      if (vertex_.size() < first + 3) vertex_.resize(first), last_.resize(first);
+      if (vertex_.size() > first) links_.add(static_cast<int>(vertex_.size() - first));
+    });
+    several_ = field.links != nullptr;
     n_ = static_cast<int>(vertex_.size());
     normal_.resize(n_);
     length_.resize(n_);
@@ -95,8 +104,8 @@ class DistanceOutline {
   }
 
   [[nodiscard]] int size() const { return n_; }
-  [[nodiscard]] int after(int i) const { return next(i, n_); }
-  [[nodiscard]] int before(int i) const { return previous(i, n_); }
+  [[nodiscard]] int after(int i) const { return next(links(), i, n_); }
+  [[nodiscard]] int before(int i) const { return previous(links(), i, n_); }
   [[nodiscard]] const Point& vertex(int i) const { return vertex_[i]; }
   /// The inward unit normal of edge i.
   [[nodiscard]] const Point& normal(int i) const { return normal_[i]; }
@@ -212,7 +221,11 @@ class DistanceOutline {
     return bisector.from < bisector.to;
   }
 
+  [[nodiscard]] const RingLinks* links() const { return several_ ? &links_ : nullptr; }
+
   int n_ = 0;
+  bool several_ = false;  // whether there are several rings
+  RingLinks links_;       // neighbours, if there are
   std::vector<Point> vertex_, normal_;
   Real same_{};              // distance within which vertices are one
   std::vector<Point> last_;  // of the vertices that have become this one

@@ -32,7 +32,8 @@ template <class Real>
 class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
-  /// in the frame of the field. If a coordinate of the field is not finite, the result is NaN.
+  /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
+  /// a coordinate of the field is not finite, the result is NaN.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
     Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite

@@ -1,6 +1,7 @@
 #include "geometry/integrals/edge_integral.hpp"
 
 #include <cmath>
+#include <iterator>
 
 #include "geometry/integrals/distance_volume.hpp"
 #include "geometry/integrals/edge_trace.hpp"
@@ -41,22 +42,33 @@ std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const 
 }
 
 using Ring = std::vector<Vec2>;
+using PlacedRings = std::vector<Ring>;
 using Parts = std::vector<lower_envelope::SignedRing<double>>;
 
-Ring ring(const PlacedPotential& p, const Vec2& shift) {
-  Ring result;
-  for (int v = 0; v < p.size; ++v) result.push_back(Vec2(p.x[v], p.y[v]) + shift);
-  return result;
+// The rings of a polygon. Holes are clockwise, so that integrals over a polygon are the sums of
+// those over its rings.
+PlacedRings placed_rings(const PlacedPotential& p, const Vec2& shift) {
+  PlacedRings rings;
+  for_each_ring(p.links, p.size, [&](int first, int last) {
+    rings.emplace_back();
+    for (int v = first; v < last; ++v) rings.back().push_back(Vec2(p.x[v], p.y[v]) + shift);
+  });
+  return rings;
 }
 
 // A polygon as a signed sum of convex ones.
-Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
-  if (p.convex()) return {{ring(p, shift), 1}};
-  return lower_envelope::fan(ring(p, shift));
+Parts convex_parts(const PlacedPotential& p, const PlacedRings& rings) {
+  if (p.convex()) return {{rings[0], 1}};
+  Parts parts;
+  for (const Ring& ring : rings) {
+    Parts more = lower_envelope::fan(ring);
+    std::move(more.begin(), more.end(), std::back_inserter(parts));
+  }
+  return parts;
 }
 
-// INT phi_p dA over the overlap of p with the other polygon, which is given by its ring and its
-// convex parts.
+// INT phi_p dA over the overlap of p with the other polygon, which is given by its outer ring and
+// its convex parts.
 double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& other,
                     const Parts& parts) {
   std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
@@ -77,7 +89,7 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
     }
     return lower_envelope::volume_under_faces(faces, of_faces, p.capped, parts);
   }
-  const Ring outline = ring(p, shift);
+  const Ring outline = placed_rings(p, shift).front();
   double volume = 0;
   for (const auto& part : parts) {
     volume += part.sign * lower_envelope::volume_under(planes, p.capped,
@@ -90,12 +102,17 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
 // other polygon to the frame of p.
 double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
                              const Vec2& shift) {
-  std::vector<double> x, y;
-  for (const Vec2& v : ring(other, shift)) {
-    x.push_back(v.x());
-    y.push_back(v.y());
+  DistanceVolume<double> integral;
+  double volume = 0;
+  for (const Ring& ring : placed_rings(other, shift)) {
+    std::vector<double> x, y;
+    for (const Vec2& v : ring) {
+      x.push_back(v.x());
+      y.push_back(v.y());
+    }
+    volume += integral.over(placed_distance(p), x, y);
   }
-  return DistanceVolume<double>().over(placed_distance(p), x, y);
+  return volume;
 }
 
 // A pair in the frame of b.
@@ -104,16 +121,16 @@ struct ClippedPair {
       : a(placed_a),
         b(placed_b),
         offset(shift),
-        ring_a(ring(a, offset)),
-        ring_b(ring(b, Vec2::Zero())),
-        parts_a(convex_parts(a, offset)),
-        parts_b(convex_parts(b, Vec2::Zero())) {}
+        rings_a(placed_rings(a, offset)),
+        rings_b(placed_rings(b, Vec2::Zero())),
+        parts_a(convex_parts(a, rings_a)),
+        parts_b(convex_parts(b, rings_b)) {}
 
   [[nodiscard]] double energy() const {
     return (a.distance ? volume_under_distance(a, b, -offset)
-                       : volume_under(a, offset, ring_b, parts_b)) +
+                       : volume_under(a, offset, rings_b.front(), parts_b)) +
            (b.distance ? volume_under_distance(b, a, offset)
-                       : volume_under(b, Vec2::Zero(), ring_a, parts_a));
+                       : volume_under(b, Vec2::Zero(), rings_a.front(), parts_a));
   }
   [[nodiscard]] double overlap_area() const {
     const lower_envelope::Line<double> one{Vec2::Zero(), 1};
@@ -131,7 +148,7 @@ struct ClippedPair {
  private:
   const PlacedPotential &a, &b;
   Vec2 offset;
-  Ring ring_a, ring_b;
+  PlacedRings rings_a, rings_b;
   Parts parts_a, parts_b;
 };
 
@@ -172,8 +189,8 @@ class FineLines {
  public:
   explicit FineLines(const PlacedPotential& y) : y_(y) {
     for (int i = 0; i < y.size; ++i) {
-      const Fine tx = static_cast<Fine>(y.x[i + 1]) - y.x[i];
-      const Fine ty = static_cast<Fine>(y.y[i + 1]) - y.y[i];
+      const Fine tx = static_cast<Fine>(y.x[y.end(i)]) - y.x[i];
+      const Fine ty = static_cast<Fine>(y.y[y.end(i)]) - y.y[i];
       const Fine slope =
           std::hypot(static_cast<Fine>(y.gx[i]), static_cast<Fine>(y.gy[i])) / std::hypot(tx, ty);
       gx_.push_back(-ty * slope);

@@ -168,13 +168,13 @@ inline void add_capped(double u1, double v1, double u2, double v2,
   moments.add(u, 1, u2, std::min(v2, 1.0));
 }
 
-/// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
-/// `heights` has written, or, if the edge has been shortened, computed in `scratch`, which has room
-/// for two rows.
-inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
+/// The heights of the ends of edge e of x, which ends at vertex `end`, over the edges of y. They
+/// are taken from the `rows` that `heights` has written, or, if the edge has been shortened,
+/// computed in `scratch`, which has room for two rows.
+inline Row<double> row_of(const PlacedEdge& edge, int e, int end, const PlacedPotential& y,
                           const double* rows, double* scratch) {
   const int width = y.size + (y.capped ? 1 : 0);
-  if (!edge.shortened) return {rows + e * width, rows + (e + 1) * width, y.size, width};
+  if (!edge.shortened) return {rows + e * width, rows + end * width, y.size, width};
   height_row(y, edge.px, edge.py, scratch);
   height_row(y, edge.px + edge.ex, edge.py + edge.ey, scratch + width);
   return {scratch, scratch + width, y.size, width};
@@ -205,7 +205,7 @@ inline PlacedRoof<double> placed_roof(const PlacedPotential& y, const RoofNodes&
 
 /// The distance field of a placed potential that has one.
 inline PlacedDistance<double> placed_distance(const PlacedPotential& y) {
-  return {y.size, y.x, y.y, y.gx, y.gy, y.distance->slope, &y.distance->corners, y.capped};
+  return {y.size, y.x, y.y, y.gx, y.gy, y.distance->slope, &y.distance->corners, y.capped, y.links};
 }
 
 /// Adds a linear piece of phi of y, limited to 1 if y's potential is capped.
@@ -325,7 +325,7 @@ double walk_segments(const PlacedPotential& x, const PlacedPotential& y, double 
   }
   for_each_edge(near, x.size, [&](int e) {
     const PlacedEdge edge(x, y, e, dx, dy);
-    const Row<double> row = row_of(edge, e, y, rows, scratch);
+    const Row<double> row = row_of(edge, e, x.end(e), y, rows, scratch);
     double s0, s1;
     if (!clip(row, s0, s1)) return;
     const SegmentMoments<double> moments = envelope_moments(row, s0, s1, true);

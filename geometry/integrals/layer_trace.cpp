@@ -43,7 +43,8 @@ void LayerTrace::find(const PlacedPotential& x, const PlacedPotential& y, double
                       std::uint64_t near_x, std::uint64_t near_y, bool use) {
   distance_ = y.distance != nullptr;
   list_edges(x, y, dx, dy, near_x);
-  if (!use) {
+  // The layers of polygons with holes are not made.
+  if (!use || !y.layer || x.links) {
     segments_.clear();
     for (LayerEdge& edge : edges_) edge.beyond_layer = true, edge.segments_end = 0;
     return;

@@ -43,7 +43,7 @@ void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, doub
   segments.clear();
   for (int e = 0; e < x.size; ++e) {
     Segment s{Vec2(x.x[e], x.y[e]) + shift,
-              Vec2(x.x[e + 1], x.y[e + 1]) + shift,
+              Vec2(x.x[x.end(e)], x.y[x.end(e)]) + shift,
               {},
               e,
               std::numeric_limits<double>::infinity()};

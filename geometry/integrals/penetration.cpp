@@ -81,7 +81,8 @@ void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const
   const auto place = [](const PlacedPotential& p, const Vec2& origin, BoundaryDistance& boundary) {
     boundary.clear();
     for (int i = 0; i < p.size; ++i) {
-      boundary.add(Vec2(p.x[i], p.y[i]) - origin, Vec2(p.x[i + 1], p.y[i + 1]) - origin);
+      const int end = p.end(i);
+      boundary.add(Vec2(p.x[i], p.y[i]) - origin, Vec2(p.x[end], p.y[end]) - origin);
     }
   };
   // The points of segments are relative to the reference point of a.
@@ -121,9 +122,10 @@ double depth_ratio(const Potential& potential) {
   // the boundary than the hypotenuse of h and of the distance o by which its foot misses the edge.
   // o/h is largest at a corner of the face.
   const int n = potential.size();
+  const RingLinks* const links = potential.links ? &*potential.links : nullptr;
   for (int e = 0; e < n; ++e) {
     const Vec2& from = potential.vertices[e];
-    const Vec2 along = potential.vertices[next(e, n)] - from;
+    const Vec2 along = potential.vertices[next(links, e, n)] - from;
     const double length = along.norm();
     for (const int node : potential.roof->faces[e]) {
       if (node < n) continue;  // on the boundary

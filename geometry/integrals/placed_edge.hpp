@@ -17,8 +17,8 @@ struct BasicEdge {
         py(Real(x.y[e]) + dy),
         qx(px - y.reference.x()),
         qy(py - y.reference.y()),
-        ex(Real(x.x[e + 1]) - x.x[e]),
-        ey(Real(x.y[e + 1]) - x.y[e]) {
+        ex(Real(x.x[x.end(e)]) - x.x[e]),
+        ey(Real(x.y[x.end(e)]) - x.y[e]) {
     shorten(y);
   }
   Real px, py, qx, qy, ex, ey;

@@ -36,7 +36,9 @@ struct PlacedPotential {
   Vec2 shift = Vec2::Zero();
 
   /// The number of the entry with the end of edge e.
-  [[nodiscard]] int end(int e) const { return links ? links->after[static_cast<size_t>(e)] : e + 1; }
+  [[nodiscard]] int end(int e) const {
+    return links ? links->after[static_cast<size_t>(e)] : e + 1;
+  }
   /// The vertex or the edge after i, or before it.
   [[nodiscard]] int next(int i) const { return apothem::next(links, i, size); }
   [[nodiscard]] int previous(int i) const { return apothem::previous(links, i, size); }

@@ -39,20 +39,7 @@ class Line {
     const Vec2 direction = (q - p).normalized();
     const Place from = at(direction, p, 0);
     const Place to = at(direction, q, 0);
-    const Vec2* a = &polygon_[polygon_.size() - 1];
-    double side_a = side(p, q, *a);
-    for (int i = 0; i < polygon_.size(); ++i) {
-      const Vec2* b = &polygon_[i];
-      const double side_b = side(p, q, *b);
-      if ((side_a > 0) != (side_b > 0)) {
-        const double along = direction.dot(*b - *a) / (side_a - side_b);
-        crossings_.push_back(std::abs(side_a) < std::abs(side_b)
-                                 ? at(direction, *a, side_a * along)
-                                 : at(direction, *b, side_b * along));
-      }
-      a = b;
-      side_a = side_b;
-    }
+    for (int k = 0; k < polygon_.rings(); ++k) cross_ring(p, q, direction, polygon_.ring(k));
     const auto before = [](const Place& x, const Place& y) { return x.along < y.along; };
     std::sort(crossings_.begin(), crossings_.end(), before);
     double sum = 0;
@@ -75,6 +62,24 @@ class Line {
   };
   [[nodiscard]] Place at(const Vec2& direction, const Vec2& near, double rest) const {
     return {direction.dot(near - polygon_[0]) + rest, &near, rest};
+  }
+
+  // Adds the crossings of the line through p and q with a ring.
+  void cross_ring(const Vec2& p, const Vec2& q, const Vec2& direction, std::span<const Vec2> ring) {
+    const Vec2* a = &ring.back();
+    double side_a = side(p, q, *a);
+    for (const Vec2& end : ring) {
+      const Vec2* b = &end;
+      const double side_b = side(p, q, *b);
+      if ((side_a > 0) != (side_b > 0)) {
+        const double along = direction.dot(*b - *a) / (side_a - side_b);
+        crossings_.push_back(std::abs(side_a) < std::abs(side_b)
+                                 ? at(direction, *a, side_a * along)
+                                 : at(direction, *b, side_b * along));
+      }
+      a = b;
+      side_a = side_b;
+    }
   }
 
   const Polygon& polygon_;

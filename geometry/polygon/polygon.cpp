@@ -222,7 +222,6 @@ Polygon::Polygon(const std::vector<Vec2>& outer, const Rings& holes) : Polygon(o
   int given = static_cast<int>(outer.size());
   RingTables tables;
   tables.links.add(size());
-  tables.starts = {0, size()};
   for (int i = 0; i < size(); ++i) tables.input.push_back({input_index(i), input_edge(i)});
   rings_ = std::move(tables);
   for (size_t h = 0; h < holes.size(); ++h) {
@@ -248,7 +247,6 @@ void Polygon::add_hole(const Polygon& hole, int given) {
         {given + hole.input_index(i), given + hole.input_edge(hole.previous(i))});
   }
   rings_->links.add(n);
-  rings_->starts.push_back(size());
 }
 
 std::optional<int> Polygon::first_reflex_vertex() const {
@@ -283,8 +281,8 @@ std::vector<Vec2> Polygon::local_vertices() const {
 }
 
 AreaMoments area_moments(const Polygon& polygon) {
-  // Area and centroid come from triangles between vertex 0 and the edges. The second moment is summed
-  // about the centroid, because about vertex 0 a large parallel-axis term would have to be
+  // Area and centroid come from triangles between vertex 0 and the edges. The second moment is
+  // summed about the centroid, because about vertex 0 a large parallel-axis term would have to be
   // subtracted.
   const std::vector<Vec2> v = polygon.local_vertices();
   double twice_area = 0;

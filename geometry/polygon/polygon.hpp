@@ -66,13 +66,11 @@ class Polygon {
   [[nodiscard]] const Vec2& before(int i) const { return vertices_[previous(i)]; }
 
   /// Number of rings: one and the number of holes.
-  [[nodiscard]] int rings() const {
-    return rings_ ? static_cast<int>(rings_->starts.size()) - 1 : 1;
-  }
+  [[nodiscard]] int rings() const { return rings_ ? rings_->links.rings() : 1; }
   [[nodiscard]] bool has_holes() const { return rings_.has_value(); }
   /// The number of the first vertex of a ring; of ring rings() it would be size().
   [[nodiscard]] int ring_start(int ring) const {
-    return rings_ ? rings_->starts[ring] : ring == 0 ? 0 : size();
+    return rings_ ? rings_->links.starts[ring] : ring == 0 ? 0 : size();
   }
   /// The vertices of a ring. Ring 0 is the outer one.
   [[nodiscard]] std::span<const Vec2> ring(int ring) const {
@@ -112,7 +110,6 @@ class Polygon {
   // What only a polygon with holes has.
   struct RingTables {
     RingLinks links;
-    std::vector<int> starts;                // first vertices of the rings, and the end
     std::vector<std::array<int, 2>> input;  // index of each vertex and of each edge as given
   };
   void add_hole(const Polygon& hole, int given);

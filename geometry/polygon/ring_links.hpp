@@ -7,19 +7,22 @@
 
 namespace apothem {
 
-/// For every vertex of a list of several rings: the next one in its ring, and the one before.
+/// A list of the vertices of several rings, one ring after the other.
 struct RingLinks {
-  std::vector<int> after, before;
+  std::vector<int> after, before;  ///< for every vertex the next one in its ring, the one before
+  std::vector<int> starts{0};      ///< the first vertices of the rings, and the end of the list
 
-  RingLinks() = default;
   /// Adds a ring of n vertices at the end of the list.
   void add(int n) {
-    const int first = static_cast<int>(after.size());
+    const int first = starts.back();
     for (int i = 0; i < n; ++i) {
       after.push_back(first + next(i, n));
       before.push_back(first + previous(i, n));
     }
+    starts.push_back(first + n);
   }
+  /// Number of rings.
+  [[nodiscard]] int rings() const { return static_cast<int>(starts.size()) - 1; }
 };
 
 /// The vertex after vertex i, or before it, in a list of n vertices. It is one ring if there are no
@@ -29,6 +32,16 @@ inline int next(const RingLinks* links, int i, int n) {
 }
 inline int previous(const RingLinks* links, int i, int n) {
   return links ? links->before[static_cast<size_t>(i)] : previous(i, n);
+}
+
+/// Calls f(first, last) for every ring of a list of n vertices, which consists of the vertices from
+/// `first` to `last` - 1.
+template <class F>
+void for_each_ring(const RingLinks* links, int n, const F& f) {
+  if (!links) return f(0, n);
+  for (int k = 0; k < links->rings(); ++k) {
+    f(links->starts[static_cast<size_t>(k)], links->starts[static_cast<size_t>(k) + 1]);
+  }
 }
 
 }  // namespace apothem

@@ -8,7 +8,7 @@ DistanceField make_distance_field(const Polygon& polygon, double reference) {
   constexpr double kClearlyConvex = 0.125;
   DistanceField field{1 / reference, {}};
   for (int i = 0; i < polygon.size(); ++i) {
-    const Vec2 in = polygon[i] - polygon[previous(i, polygon.size())];
+    const Vec2 in = polygon[i] - polygon.before(i);
     const Vec2 out = polygon.after(i) - polygon[i];
     const double turn = cross(Vec2(in.normalized()), Vec2(out.normalized()));
     const bool convex = turn > 0 && (turn > kClearlyConvex || in.dot(out) < 0);

@@ -45,6 +45,8 @@ struct PlacedDistance {
   Real slope;                       ///< inverse of the reference length r, 1/m
   const std::vector<int>* corners;  ///< vertices that may be nearest, see DistanceField
   bool capped;                      ///< whether phi is limited to 1
+  const RingLinks* links =
+      nullptr;  ///< neighbours of the vertices of a polygon with holes, or null
 };
 
 /// Returns the integral of f(w) = sqrt(d2 + w^2) from w1 to w1 + h, and the integral of
@@ -113,7 +115,7 @@ class DistanceTrace {
     lines_.place(0, field.size);
     crossings_.clear();
     for (int a = 0; a < field.size; ++a) {
-      const int b = next(a, field.size);
+      const int b = next(field.links, a, field.size);
       lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
     }
     std::ranges::sort(crossings_, [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
@@ -214,7 +216,7 @@ class DistanceTrace {
     const Real h0 = a + b * s0;
     const Real h1 = a + b * s1;
     if ((h0 >= bound_ && h1 >= bound_) || (h0 <= -bound_ && h1 <= -bound_)) return;
-    const int j = next(i, field.size);
+    const int j = next(field.links, i, field.size);
     // Along the edge, at right angles to the gradient to the last bit. The difference of the ends
     // would not do: if they are a few units in the last place apart, its direction is round-off.
     const Real& tx = field.gy[i];

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/rare.hpp"
 #include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
-#include "geometry/polygon/rare.hpp"
 #include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
