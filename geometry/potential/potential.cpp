@@ -219,6 +219,14 @@ bool needs_skeleton(const PotentialChoice& choice) {
           choice.reference == PotentialChoice::Reference::roof);
 }
 
+Rings Potential::rings() const {
+  Rings rings;
+  for_each_ring(ring_links(), size(), [&](int first, int last) {
+    rings.emplace_back(vertices.begin() + first, vertices.begin() + last);
+  });
+  return rings;
+}
+
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice) {
   return make_potential(polygon, choice, [&] { return straight_skeleton(polygon); });
 }
