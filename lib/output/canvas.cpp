@@ -126,6 +126,12 @@ void Canvas::fill(const std::vector<Vec2>& ring, const Colour& colour) {
   cairo_fill(surface_->cairo);
 }
 
+void Canvas::fill(const std::vector<std::vector<Vec2>>& rings, const Colour& colour) {
+  for (const std::vector<Vec2>& ring : rings) add_path(surface_->cairo, ring, true);
+  set_colour(surface_->cairo, colour);
+  cairo_fill(surface_->cairo);
+}
+
 void Canvas::stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen) {
   add_path(surface_->cairo, line, closed);
   set_pen(surface_->cairo, pen);

@@ -119,12 +119,17 @@ class Drawing {
   void draw(const Bands& bands) {
     const double r = picture_.reference;
     canvas_.fill(place(picture_.polygon.local_vertices()), bands.colours[0]);
-    std::vector<std::vector<Ring>> levels;
+    std::vector<Rings> levels;
     for (size_t i = 1; i < bands.colours.size(); ++i) {
-      levels.push_back(singular_area(picture_.skeleton, bands.bounds[i] * r).polygons);
-      for (const Ring& ring : levels.back()) canvas_.fill(place(ring), bands.colours[i]);
+      const SingularArea level = singular_area(picture_.skeleton, bands.bounds[i] * r);
+      for (const PolygonWithHoles& part : level.polygons) {
+        canvas_.fill(place(rings_of(part)), bands.colours[i]);
+      }
+      levels.push_back(rings_of(level.polygons));
     }
-    for (const Ring& ring : picture_.singular.polygons) canvas_.fill(place(ring), viridis(1));
+    for (const PolygonWithHoles& part : picture_.singular.polygons) {
+      canvas_.fill(place(rings_of(part)), viridis(1));
+    }
     for (size_t i = kBandsPerLine; i < bands.colours.size(); i += kBandsPerLine) {
       for (const Ring& ring : levels[i - 1]) canvas_.stroke(place(ring), true, kContour);
     }
@@ -140,6 +145,10 @@ class Drawing {
 
  private:
   [[nodiscard]] Ring place(const Ring& ring) const { return axes_(view_(ring)); }
+  [[nodiscard]] Rings place(Rings rings) const {
+    for (Ring& ring : rings) ring = place(ring);
+    return rings;
+  }
   [[nodiscard]] Vec2 place(const Vec2& point) const { return axes_(view_(point)); }
 
   void draw_faces() {
@@ -160,7 +169,7 @@ class Drawing {
   }
 
   void draw_singular_area() {
-    for (const Ring& ring : picture_.singular.polygons)
+    for (const Ring& ring : rings_of(picture_.singular.polygons))
       canvas_.stroke(place(ring), true, kSingular);
     for (const auto& [a, b] : picture_.singular.segments) {
       canvas_.stroke({place(a), place(b)}, false, {kRed, 3.5});

@@ -11,6 +11,10 @@ std::vector<Vec2> in_world(const Polygon& polygon, std::vector<Vec2> points) {
   for (Vec2& p : points) p += polygon.origin();
   return points;
 }
+Rings in_world(const Polygon& polygon, Rings rings) {
+  for (std::vector<Vec2>& ring : rings) ring = in_world(polygon, std::move(ring));
+  return rings;
+}
 
 }  // namespace
 
@@ -49,16 +53,16 @@ std::vector<Shape> face_shapes(const Polygon& polygon, const Skeleton& skeleton)
 
 std::vector<Shape> offset_shapes(const Polygon& polygon, const Skeleton& skeleton, double depth) {
   std::vector<Shape> shapes;
-  for (const std::vector<Vec2>& ring : singular_area(skeleton, depth).polygons) {
-    shapes.push_back({Shape::Kind::polygon, {in_world(polygon, ring)}, {{"depth", depth}}});
+  for (const PolygonWithHoles& part : singular_area(skeleton, depth).polygons) {
+    shapes.push_back({Shape::Kind::polygon, in_world(polygon, rings_of(part)), {{"depth", depth}}});
   }
   return shapes;
 }
 
 std::vector<Shape> singular_shapes(const Polygon& polygon, const SingularArea& singular) {
   std::vector<Shape> shapes;
-  for (const std::vector<Vec2>& ring : singular.polygons) {
-    shapes.push_back({Shape::Kind::polygon, {in_world(polygon, ring)}});
+  for (const PolygonWithHoles& part : singular.polygons) {
+    shapes.push_back({Shape::Kind::polygon, in_world(polygon, rings_of(part))});
   }
   for (const std::array<Vec2, 2>& ends : singular.segments) {
     shapes.push_back({Shape::Kind::line, {in_world(polygon, {ends[0], ends[1]})}});

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "geometry/polygon/triangulation.hpp"
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/vtk_grid.hpp"
@@ -67,8 +68,19 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
       grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
     }
   };
-  for (const std::vector<Vec2>& ring : singular.polygons)
-    add(VTK_POLYGON, ring, convex_cells(ring));
+  for (const PolygonWithHoles& part : singular.polygons) {
+    if (part.holes.empty()) {
+      add(VTK_POLYGON, part.outer, convex_cells(part.outer));
+      continue;
+    }
+    std::vector<Vec2> corners;
+    for (const std::vector<Vec2>& ring : rings_of(part)) {
+      corners.insert(corners.end(), ring.begin(), ring.end());
+    }
+    std::vector<std::vector<int>> triangles;
+    for (const Triangle& t : triangulate(part)) triangles.emplace_back(t.begin(), t.end());
+    add(VTK_POLYGON, corners, triangles);
+  }
   for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends, {{0, 1}});
   for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point}, {{0}});
   return xml(grid);
