@@ -118,20 +118,24 @@ class Drawing {
 
   void draw(const Bands& bands) {
     const double r = picture_.reference;
-    canvas_.fill(place(picture_.polygon.local_vertices()), bands.colours[0]);
+    Rings outline = rings_of(picture_.polygon);
+    for (Ring& ring : outline) {
+      for (Vec2& p : ring) p -= picture_.polygon.origin();
+    }
+    fill(outline, bands.colours[0]);
     std::vector<std::vector<Ring>> levels;
     for (size_t i = 1; i < bands.colours.size(); ++i) {
       levels.push_back(singular_area(picture_.skeleton, bands.bounds[i] * r).polygons);
-      for (const Ring& ring : levels.back()) canvas_.fill(place(ring), bands.colours[i]);
+      fill(levels.back(), bands.colours[i]);
     }
-    for (const Ring& ring : picture_.singular.polygons) canvas_.fill(place(ring), viridis(1));
+    fill(picture_.singular.polygons, viridis(1));
     for (size_t i = kBandsPerLine; i < bands.colours.size(); i += kBandsPerLine) {
       for (const Ring& ring : levels[i - 1]) canvas_.stroke(place(ring), true, kContour);
     }
     draw_faces();
     draw_circles();
     draw_singular_area();
-    canvas_.stroke(place(picture_.polygon.local_vertices()), true, kOutline);
+    for (const Ring& ring : outline) canvas_.stroke(place(ring), true, kOutline);
   }
 
   [[nodiscard]] Pen face_pen() const {
@@ -139,6 +143,17 @@ class Drawing {
   }
 
  private:
+  // Of a polygon with holes the levels have holes as well.
+  void fill(const Rings& rings, const Colour& colour) {
+    if (!picture_.polygon.has_holes()) {
+      for (const Ring& ring : rings) canvas_.fill(place(ring), colour);
+      return;
+    }
+    Rings placed;
+    for (const Ring& ring : rings) placed.push_back(place(ring));
+    canvas_.fill_even_odd(placed, colour);
+  }
+
   [[nodiscard]] Ring place(const Ring& ring) const { return axes_(view_(ring)); }
   [[nodiscard]] Vec2 place(const Vec2& point) const { return axes_(view_(point)); }
 
@@ -176,13 +191,18 @@ class Drawing {
   const Axes& axes_;
 };
 
+std::string holes_in_words(const Polygon& polygon) {
+  const int holes = polygon.rings() - 1;
+  return holes == 0 ? "" : fmt::format(", {} hole{}", holes, holes == 1 ? "" : "s");
+}
+
 // The lines of the title.
 std::vector<std::string> title(const PotentialPicture& picture, const View& view,
                                const PictureLayout& layout) {
   std::vector<std::string> lines{
       fmt::format("Distance potential φ, r = {:.6g} m ({})", picture.reference,
                   picture.reference_name),
-      fmt::format("{} vertices, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(),
+      fmt::format("{} vertices{}, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(), holes_in_words(picture.polygon),
                   picture.circle.radius, picture.skeleton.roof_height)};
   if (view.stretched) {
     const double x = (layout.frame.x1 - layout.frame.x0) / (layout.window.x1 - layout.window.x0);

@@ -1,5 +1,5 @@
-// Parts of a polygon's geometry as shapes for a file. Numbers of edges are those of the ring as it
-// was given; coordinates are those of its vertices, m.
+// Parts of a polygon's geometry as shapes for a file. Numbers of edges are those of the rings as
+// they were given, one after the other; coordinates are those of its vertices, m.
 #pragma once
 
 #include <vector>
@@ -10,6 +10,10 @@
 #include "lib/output/shape_file.hpp"
 
 namespace apothem {
+
+/// Rings that do not cross each other as polygons: a clockwise one is a hole of the counter-clockwise
+/// one that is the innermost around it.
+std::vector<PolygonWithHoles> polygons_of(const Rings& rings);
 
 /// The inner arcs of the straight skeleton as lines: `left_edge` and `right_edge`, the edges on
 /// whose faces the arc lies; `start_height` and `end_height`, the roof at its ends, m.

@@ -10,6 +10,7 @@
 
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
+#include "lib/output/polygon_shapes.hpp"
 #include "lib/output/vtk_grid.hpp"
 
 namespace apothem {
@@ -67,8 +68,14 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
       grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
     }
   };
-  for (const std::vector<Vec2>& ring : singular.polygons)
-    add(VTK_POLYGON, ring, convex_cells(ring));
+  for (const PolygonWithHoles& part : polygons_of(singular.polygons)) {
+    const Rings rings = rings_of(part);
+    std::vector<Vec2> corners;
+    for (const std::vector<Vec2>& ring : rings) {
+      corners.insert(corners.end(), ring.begin(), ring.end());
+    }
+    add(VTK_POLYGON, corners, convex_cells(rings));
+  }
   for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends, {{0, 1}});
   for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point}, {{0}});
   return xml(grid);
