@@ -124,6 +124,12 @@ std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2
   return moved;
 }
 
+void require_no_holes(const Polygon& region) {
+  if (!region.has_holes()) return;
+  throw InvalidPolygon(
+      "has holes, around which Voronoi cells are not supported yet; cut it so that it has none", 0);
+}
+
 }  // namespace
 
 std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t seed) {
@@ -174,6 +180,7 @@ Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps) {
 
 VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge) {
+  require_no_holes(region);
   const Polygon local = local_polygon(region);
   if (sites.empty()) throw std::invalid_argument("there must be at least one site");
   for (const Vec2& site : sites) {
@@ -210,6 +217,7 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
 }
 
 VoronoiMesh voronoi_mesh(const Polygon& region, const VoronoiOptions& options) {
+  require_no_holes(region);
   if (options.cells < 1) throw std::invalid_argument("the number of cells must be at least 1");
   if (options.lloyd < 0)
     throw std::invalid_argument("Lloyd's iteration cannot have negative steps");

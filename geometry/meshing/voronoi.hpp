@@ -70,7 +70,8 @@ Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps);
 VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge);
 
-/// Makes a mesh with random_sites, relax and the function above. Throws as these functions do, and
+/// Makes a mesh with random_sites, relax and the function above. Regions with holes are not
+/// supported yet: like the function above, it throws InvalidPolygon for them. Throws as these functions do, and
 /// std::invalid_argument if an option is out of range.
 VoronoiMesh voronoi_mesh(const Polygon& region, const VoronoiOptions& options);
 

@@ -36,10 +36,13 @@ Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
                              const std::vector<Block>& blocks) {
   Arrangement result;
   result.rings.resize(blocks.size());
+  result.poses.resize(blocks.size());
   for (const size_t i : by_size(blocks)) {
     int tries = 0;
     do {
-      result.rings[i] = ring_of(blocks[i], random_place(space.box(), random));
+      const Vec2 place = random_place(space.box(), random);
+      result.poses[i] = {place, blocks[i].angle, blocks[i].scale};
+      result.rings[i] = ring_of(blocks[i], place);
       ++tries;
     } while (!space.is_free(result.rings[i]) && tries < kTries);
     if (tries == kTries) {
@@ -55,6 +58,7 @@ Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
 Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks) {
   Arrangement result;
   result.rings.resize(blocks.size());
+  result.poses.resize(blocks.size());
   std::vector<Box> boxes;
   double width = 0, height = 0;
   for (const Block& block : blocks) {
@@ -73,9 +77,11 @@ Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks
       if (next == blocks.size()) return result;
       const Box& box = boxes[next];
       const Vec2 centre((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
-      std::vector<Vec2> ring = ring_of(blocks[next], Vec2(x, y) - centre);
+      const Vec2 place = Vec2(x, y) - centre;
+      std::vector<Vec2> ring = ring_of(blocks[next], place);
       if (!space.is_free(ring)) continue;
       space.add(ring);
+      result.poses[next] = {place, blocks[next].angle, blocks[next].scale};
       result.rings[next] = std::move(ring);
       ++result.placed;
     }
@@ -147,6 +153,7 @@ class Growth {
     for (int i = 0; i < count_; ++i) {
       const std::span<const Vec2> ring = space_.block(i);
       result.rings[order[i]].assign(ring.begin(), ring.end());
+      result.poses[order[i]] = {places_[i], blocks_[i].angle, blocks_[i].scale * parts_[i]};
     }
     return result;
   }

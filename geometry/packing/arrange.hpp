@@ -9,16 +9,25 @@
 
 namespace apothem {
 
-/// A block to be placed.
+/// A block to be placed. No other block is put into its holes.
 struct Block {
-  std::vector<Vec2> shape;  ///< of area 1 about its centroid (block_shapes.hpp)
+  std::vector<Vec2> shape;  ///< about its centroid, of area 1 without the holes (block_shapes.hpp)
   double scale = 1;         ///< square root of its area, m
   double angle = 0;         ///< rad
+  Rings holes = {};         ///< in the coordinates of the shape
+};
+
+/// Where a block has been placed.
+struct BlockPose {
+  Vec2 place = Vec2::Zero();  ///< of the origin of its shape, m
+  double angle = 0;           ///< rad
+  double scale = 1;           ///< m
 };
 
 /// What has been placed, and what could not be.
 struct Arrangement {
   std::vector<std::vector<Vec2>> rings;  ///< of the blocks, in their order; empty if not placed
+  std::vector<BlockPose> poses;          ///< of the blocks that have been placed
   int placed = 0;
   /// Of the blocks, as far as they have grown: square root of their area over that of full size.
   /// Below 1 only for `grow`.

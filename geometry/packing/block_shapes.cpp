@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "geometry/polygon/cyclic.hpp"
@@ -75,6 +76,20 @@ std::vector<Vec2> normalised(std::vector<Vec2> ring) {
   std::vector<Vec2> result = polygon.local_vertices();
   const double scale = 1 / std::sqrt(moments.area);
   for (Vec2& v : result) v = scale * (v - moments.centroid);
+  return result;
+}
+
+PolygonWithHoles normalised_with_holes(const Polygon& polygon) {
+  Rings rings = rings_of(polygon);
+  const Polygon outer(rings[0]);
+  const Vec2 middle = outer.origin() + area_moments(outer).centroid;
+  const double scale = 1 / std::sqrt(area_moments(polygon).area);
+  for (std::vector<Vec2>& ring : rings) {
+    for (Vec2& v : ring) v = scale * (v - middle);
+  }
+  PolygonWithHoles result{std::move(rings[0]), {}};
+  result.holes.assign(std::make_move_iterator(rings.begin() + 1),
+                      std::make_move_iterator(rings.end()));
   return result;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/polygon/point.hpp"
+#include "geometry/polygon/polygon.hpp"
 #include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem {
@@ -25,6 +25,9 @@ std::vector<Vec2> cross_shape(double arm);
 /// A ring moved to its centroid and scaled to area 1; its vertices turn counter-clockwise. The ring
 /// must be simple.
 std::vector<Vec2> normalised(std::vector<Vec2> ring);
+/// A polygon with holes, moved to the centroid of its outer ring and scaled to area 1, which does
+/// not include the holes.
+PolygonWithHoles normalised_with_holes(const Polygon& polygon);
 
 /// The ring turned by `angle` (rad), scaled and moved to `place`. `place_into` writes it into
 /// `result`.

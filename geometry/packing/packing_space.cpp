@@ -114,11 +114,15 @@ void PackingSpace::leave(int solid) {
   each_cell(cells_of(boxes_[solid]), [&](size_t cell) { std::erase(cells_[cell], solid); });
 }
 
-void PackingSpace::add_obstacle(const std::vector<Vec2>& ring) {
-  const Box box = box_of(ring);
+void PackingSpace::add_obstacle(const PolygonWithHoles& polygon) {
+  const Box box = box_of(polygon.outer);
   if (apart(box, box_.grown(clearance_))) return;
-  add(ring);
+  add(polygon.outer);
   ++fixed_;
+  if (polygon.holes.empty()) return;
+  convex_.back() = 0;
+  hollows_.resize(static_cast<size_t>(fixed_));
+  hollows_.back() = polygon.holes;
 }
 
 void PackingSpace::add(std::span<const Vec2> ring) {
@@ -175,9 +179,20 @@ bool PackingSpace::keeps_off(std::span<const Vec2> ring, const Box& box, bool co
       if (there == Between::nothing && here == Between::nothing) return false;
     }
   }
-  return !borders_nearer(ring, box, other, clearance_) &&
-         !(contains(boxes_[solid], box) && strictly_inside(other, ring.front())) &&
-         !(contains(box, boxes_[solid]) && strictly_inside(ring, other.front()));
+  if (borders_nearer(ring, box, other, clearance_)) return false;
+  if (contains(boxes_[solid], box) && strictly_inside(other, ring.front())) {
+    const auto i = static_cast<size_t>(solid);
+    return i < hollows_.size() && keeps_off_holes(ring, box, hollows_[i]);
+  }
+  return !(contains(box, boxes_[solid]) && strictly_inside(ring, other.front()));
+}
+
+// Whether a ring inside the outer ring of an obstacle lies in one of its holes.
+bool PackingSpace::keeps_off_holes(std::span<const Vec2> ring, const Box& box,
+                                   const Rings& holes) const {
+  return std::ranges::any_of(holes, [&](const std::vector<Vec2>& hole) {
+    return strictly_inside(hole, ring.front()) && !borders_nearer(ring, box, hole, clearance_);
+  });
 }
 
 bool PackingSpace::is_clear(std::span<const Vec2> ring, int except) const {

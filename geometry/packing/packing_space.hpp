@@ -18,7 +18,9 @@ class PackingSpace {
   PackingSpace(const Polygon& outline, const std::vector<Polygon>& holes, double gap, double size);
 
   /// Keeps blocks away from a simple ring and from all that is inside it.
-  void add_obstacle(const std::vector<Vec2>& ring);
+  void add_obstacle(const std::vector<Vec2>& ring) { add_obstacle(PolygonWithHoles{ring, {}}); }
+  /// Keeps blocks away from a polygon. They may lie in its holes.
+  void add_obstacle(const PolygonWithHoles& polygon);
   /// True if a block may lie there. The block of number `except` is not in the way.
   [[nodiscard]] bool is_free(std::span<const Vec2> ring, int except = -1) const;
   /// The same, but the border of the region does not count.
@@ -45,6 +47,8 @@ class PackingSpace {
   [[nodiscard]] bool keeps_off_border(std::span<const Vec2> ring, const Box& box) const;
   [[nodiscard]] bool keeps_off(std::span<const Vec2> ring, const Box& box, bool convex,
                                int solid) const;
+  [[nodiscard]] bool keeps_off_holes(std::span<const Vec2> ring, const Box& box,
+                                     const Rings& holes) const;
   [[nodiscard]] std::span<const Vec2> ring(int solid) const {
     return {points_.data() + first_[solid], points_.data() + first_[solid + 1]};
   }
@@ -65,6 +69,7 @@ class PackingSpace {
   std::vector<Box> boxes_;
   std::vector<char> convex_;
   int fixed_ = 0;  // number of holes and obstacles
+  std::vector<Rings> hollows_;  // holes of the obstacles, up to the last one that has any
   std::vector<std::vector<int>> cells_;
   mutable std::vector<int> in_the_way_;      // per solid: what has been in its way last, or -1
   mutable std::vector<std::uint64_t> seen_;  // by which question each solid was looked at last

@@ -42,7 +42,7 @@ std::vector<PolygonWithHoles> boolean_operation(const Rings& a, const Rings& b,
                                                 BooleanOperation operation);
 inline std::vector<PolygonWithHoles> boolean_operation(const Polygon& a, const Polygon& b,
                                                        BooleanOperation operation) {
-  return boolean_operation(Rings{a.vertices()}, Rings{b.vertices()}, operation);
+  return boolean_operation(rings_of(a), rings_of(b), operation);
 }
 
 }  // namespace apothem

@@ -13,16 +13,15 @@ constexpr double kTriangleToCut = 2.2;  // edge length of the triangles to cut, 
 constexpr double kLeastSine = .6;       // least sine of the corners of two joined triangles
 constexpr int kSweeps = 20;             // of smoothing
 
+// Of the outer ring, as it was given.
 std::vector<int> edge_numbers(const Polygon& outline) {
   std::vector<int> numbers;
-  for (int e = 0; e < outline.size(); ++e) numbers.push_back(outline.input_edge(e));
+  for (int e = 0; e < outline.ring_start(1); ++e) numbers.push_back(outline.input_edge(e));
   return numbers;
 }
 
-}  // namespace
-
-Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
-               ElementShape shape) {
+Mesh filled(const Polygon& outline, const std::vector<Polygon>& holes, double size,
+            ElementShape shape, const std::vector<int>& edges) {
   const bool quadrilaterals = shape == ElementShape::quadrilateral;
   TriangleMesh triangles =
       delaunay_mesh(outline, holes, quadrilaterals ? kTriangleToCut * size : size);
@@ -35,9 +34,23 @@ Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double
   }
   std::vector<int> hole_sizes;
   for (const Polygon& hole : holes) hole_sizes.push_back(hole.size());
-  add_outline_groups(mesh, edge_numbers(outline), hole_sizes);
+  add_outline_groups(mesh, edges, hole_sizes);
   check_mesh(mesh);
   return mesh;
+}
+
+}  // namespace
+
+Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
+               ElementShape shape) {
+  return filled(outline, holes, size, shape, edge_numbers(outline));
+}
+
+Mesh fill_mesh(const Polygon& region, double size, ElementShape shape) {
+  Rings rings = rings_of(region);
+  std::vector<Polygon> holes;
+  for (size_t i = 1; i < rings.size(); ++i) holes.emplace_back(std::move(rings[i]));
+  return filled(Polygon(std::move(rings[0])), holes, size, shape, edge_numbers(region));
 }
 
 Mesh mesh_of_cells(const Polygon& region, const PolygonMesh& cells) {

@@ -20,6 +20,9 @@ namespace apothem {
 Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
                ElementShape shape);
 
+/// The same of a polygon, with its holes.
+Mesh fill_mesh(const Polygon& region, double size, ElementShape shape);
+
 /// The cells of a tiling of `region`, in the coordinates of in_world(), as elements, with the
 /// groups of fill_mesh.
 Mesh mesh_of_cells(const Polygon& region, const PolygonMesh& cells);

@@ -83,9 +83,12 @@ Motions motions_of(const Model& model, const State& state, const std::vector<dou
 double area_in(const Model& model, const State& state, BodyIndex body, const Region& region) {
   if (is_rigid(model, body)) {
     const auto x = state.pose(body);
-    std::vector<Vec2> ring = model.bodies[body].potential.vertices;
-    for (Vec2& v : ring) v = Vec2(x.head<2>()) + turned(v, x[2]);
-    return region.overlap(ring);
+    double sum = 0;  // holes are clockwise, so that their areas count as negative
+    for (std::vector<Vec2>& ring : model.bodies[body].rings()) {
+      for (Vec2& v : ring) v = Vec2(x.head<2>()) + turned(v, x[2]);
+      sum += region.overlap(ring);
+    }
+    return sum;
   }
   const Mesh& mesh = meshed(model, body).mesh;
   double sum = 0;

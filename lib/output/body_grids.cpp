@@ -77,7 +77,7 @@ vtkSmartPointer<vtkDataArray> array_of(const BodyQuantity& quantity) {
 }
 
 // The bodies of a frame: a rigid one is a cell, and so is an element, or several if it is not
-// convex. `rigid_cells` are those of the rigid bodies that are not convex.
+// convex, as none with holes is. `rigid_cells` are those of the rigid bodies that are not convex.
 class BodyGrid {
  public:
   BodyGrid(const Model& model, const FrameContents& frame,
@@ -265,11 +265,12 @@ vtkNew<vtkUnstructuredGrid> outline_grid(const Model& model, const State& state,
   const auto rigid = static_cast<RigidIndex>(model.bodies.size());
   for (RigidIndex i = 0; i < rigid; ++i) {
     if (state.is_absent(i)) continue;
-    const std::vector<Vec2>& vertices = model.bodies[i].potential.vertices;
     const auto pose = state.pose(i);
     const Vec2 centre = pose.head<2>();
     const double angle = pose[2];
-    add(i, vertices.size(), [&](size_t k) { return Vec2(centre + turned(vertices[k], angle)); });
+    for (const std::vector<Vec2>& ring : model.bodies[i].rings()) {
+      add(i, ring.size(), [&](size_t k) { return Vec2(centre + turned(ring[k], angle)); });
+    }
   }
   for (DeformableIndex i = 0; i < static_cast<DeformableIndex>(model.deformables.size()); ++i) {
     if (state.is_absent(rigid + i)) continue;

@@ -126,10 +126,18 @@ void Canvas::fill(const std::vector<Vec2>& ring, const Colour& colour) {
   cairo_fill(surface_->cairo);
 }
 
-void Canvas::fill(const std::vector<std::vector<Vec2>>& rings, const Colour& colour) {
-  for (const std::vector<Vec2>& ring : rings) add_path(surface_->cairo, ring, true);
-  set_colour(surface_->cairo, colour);
-  cairo_fill(surface_->cairo);
+void Canvas::fill_even_odd(const std::vector<std::vector<Vec2>>& rings, const Colour& colour) {
+  cairo_t* cairo = surface_->cairo;
+  cairo_new_path(cairo);
+  for (const std::vector<Vec2>& ring : rings) {
+    cairo_new_sub_path(cairo);
+    for (const Vec2& p : ring) cairo_line_to(cairo, p.x(), p.y());
+    cairo_close_path(cairo);
+  }
+  set_colour(cairo, colour);
+  cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
+  cairo_fill(cairo);
+  cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_WINDING);
 }
 
 void Canvas::stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen) {

@@ -66,8 +66,8 @@ class Canvas {
 
   /// Fills a polygon.
   void fill(const std::vector<Vec2>& ring, const Colour& colour);
-  /// Fills a polygon with holes: the outer ring, and the holes in the other sense.
-  void fill(const std::vector<std::vector<Vec2>>& rings, const Colour& colour);
+  /// Fills what an odd number of the rings surround, like a polygon with holes.
+  void fill_even_odd(const std::vector<std::vector<Vec2>>& rings, const Colour& colour);
   /// Draws a line through the points and, if `closed`, back to the first one.
   void stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen);
   /// Draws an image of width x height pixels into the frame; `colours` go row by row from the top,

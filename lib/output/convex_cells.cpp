@@ -7,6 +7,7 @@
 
 #include "geometry/polygon/convex_parts.hpp"
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/triangulation.hpp"
 
 namespace apothem {
 namespace {
@@ -46,8 +47,26 @@ std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring) {
   }
 }
 
-std::vector<int> joined(const std::vector<std::vector<int>>& cells) {
-  if (cells.size() == 1) return cells[0];
+std::vector<std::vector<int>> convex_cells(const Rings& rings) {
+  if (rings.size() == 1) return convex_cells(rings[0]);
+  const PolygonWithHoles whole{rings[0], {rings.begin() + 1, rings.end()}};
+  std::vector<Vec2> corners;
+  for (const std::vector<Vec2>& ring : rings) {
+    corners.insert(corners.end(), ring.begin(), ring.end());
+  }
+  try {
+    const Polygon polygon(whole);
+    if (polygon.vertices() == corners) return convex_parts(polygon);
+  } catch (const InvalidPolygon&) {
+    // Rings that touch each other, like those of an offset.
+  }
+  std::vector<std::vector<int>> cells;
+  for (const Triangle& t : triangulate(whole)) cells.emplace_back(t.begin(), t.end());
+  return cells;
+}
+
+std::vector<std::vector<int>> rings_around(const std::vector<std::vector<int>>& cells) {
+  if (cells.size() == 1) return cells;
   std::set<std::pair<int, int>> edges;
   for (const std::vector<int>& cell : cells) {
     for (size_t i = 0; i < cell.size(); ++i) {
@@ -57,15 +76,22 @@ std::vector<int> joined(const std::vector<std::vector<int>>& cells) {
     }
   }
   std::map<int, int> next(edges.begin(), edges.end());
-  std::vector<int> longest;
+  std::vector<std::vector<int>> rings;
   while (!next.empty()) {
-    std::vector<int> ring;
+    std::vector<int>& ring = rings.emplace_back();
     for (auto at = next.begin(); at != next.end(); at = next.find(ring.back())) {
       if (ring.empty()) ring.push_back(at->first);
       ring.push_back(at->second);
       next.erase(at);
     }
     if (ring.front() == ring.back()) ring.pop_back();
+  }
+  return rings;
+}
+
+std::vector<int> joined(const std::vector<std::vector<int>>& cells) {
+  std::vector<int> longest;
+  for (std::vector<int>& ring : rings_around(cells)) {
     if (ring.size() > longest.size()) longest = std::move(ring);
   }
   return longest;

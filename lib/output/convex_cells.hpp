@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/polygon/point.hpp"
+#include "geometry/polygon/polygon_with_holes.hpp"
 
 namespace apothem {
 
@@ -14,7 +14,13 @@ namespace apothem {
 /// of an element turned inside out, stays whole.
 std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring);
 
-/// The ring that cells like these were made of, as numbers of points, or the longest of several.
+/// The same of a polygon, whose rings are the outer one and holes, clockwise. Corners are numbered
+/// from ring to ring.
+std::vector<std::vector<int>> convex_cells(const Rings& rings);
+
+/// The rings around cells like these, as numbers of points, with the cells on their left.
+std::vector<std::vector<int>> rings_around(const std::vector<std::vector<int>>& cells);
+/// The ring that cells like these were made of, or the longest of several.
 std::vector<int> joined(const std::vector<std::vector<int>>& cells);
 
 }  // namespace apothem

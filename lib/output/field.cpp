@@ -109,6 +109,7 @@ Field field_of(const Frame& frame, const FieldQuantity& quantity) {
   Field field;
   field.mesh = frame.mesh;
   field.mesh.nodes = frame.position;
+  field.holes = frame.holes;
   field.nodal = quantity.kind == FieldKind::node;
   if (quantity.kind == FieldKind::category) field.names = frame.material_names;
   const bool rigid_only = all_rigid(frame);

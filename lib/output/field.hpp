@@ -45,6 +45,7 @@ struct Field {
   std::vector<bool> blank;     ///< one per cell: no value, like the stress of a rigid body
   /// Of the values 0, 1 and so on of a category; empty: the values are numbers.
   std::vector<std::string> names = {};
+  ElementHoles holes = {};  ///< of cells
 };
 
 /// Whether a body has values of that kind in a scene where, if `rigid_only`, no body is of finite

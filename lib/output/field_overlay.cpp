@@ -36,11 +36,14 @@ std::vector<std::vector<Vec2>> boundary_lines(const Mesh& mesh) {
 
 }  // namespace
 
-void draw_outlines(Canvas& canvas, const Axes& axes, const Mesh& mesh, double area) {
-  const std::vector<std::vector<Vec2>> lines = boundary_lines(mesh);
+void draw_outlines(Canvas& canvas, const Axes& axes, const Field& field, double area) {
+  Rings lines = boundary_lines(field.mesh);
   const double size = std::sqrt(area / std::max<double>(1, static_cast<double>(lines.size())));
   const Pen pen{{.15, .15, .15},
                 std::clamp(kLineOfSize * size, kThinnestOutline, kThickestOutline)};
+  for (const auto& [element, holes] : field.holes) {
+    for (const std::vector<int>& hole : holes) lines.push_back(field.mesh.places(hole));
+  }
   for (const std::vector<Vec2>& line : lines) canvas.stroke(axes(line), true, pen);
 }
 

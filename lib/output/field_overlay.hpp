@@ -5,13 +5,13 @@
 
 #include "lib/output/axes.hpp"
 #include "lib/output/canvas.hpp"
-#include "lib/output/run_folder.hpp"
+#include "lib/output/field.hpp"
 
 namespace apothem {
 
 /// The boundaries of all bodies; `area` of the frame (square points) and the number of bodies say
 /// how fine the lines are.
-void draw_outlines(Canvas& canvas, const Axes& axes, const Mesh& mesh, double area);
+void draw_outlines(Canvas& canvas, const Axes& axes, const Field& field, double area);
 
 /// Force chains: lines as wide as the normal force; that of `largest` (N) is `widest` points wide.
 void draw_chains(Canvas& canvas, const Axes& axes, const std::vector<ForceChain>& chains,

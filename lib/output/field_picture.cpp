@@ -31,7 +31,7 @@ void draw_frame(Canvas& canvas, const FieldPanel& panel, const PanelLayout& layo
   canvas.image(frame, wide, high, paint(shown.field, layout.window, colour_of, wide, high));
   const Axes axes(frame, layout.window, {"x", "m"}, {"y", "m"});
   canvas.clip(frame);
-  draw_outlines(canvas, axes, shown.field.mesh, layout.wide * layout.high);
+  draw_outlines(canvas, axes, shown.field, layout.wide * layout.high);
   draw_chains(canvas, axes, shown.chains, layout.largest_force, layout.widest_chain);
   draw_roses(canvas, axes, shown.roses);
   canvas.unclip();

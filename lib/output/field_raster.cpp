@@ -24,12 +24,13 @@ class Raster {
             window_.y1 - (row + .5) / height_ * (window_.y1 - window_.y0)};
   }
 
-  /// Calls f(column, row) for each pixel whose centre is inside the ring. If rings share an edge, a
+  /// Calls f(column, row) for each pixel whose centre is inside an odd number of the rings, of
+  /// which the first one is around all others. If polygons share an edge, a
   /// centre belongs to exactly one of them, because the crossings of a row with the edge have the
   /// same bits in both. `crossings` is working memory.
   template <class F>
-  void each_pixel(const std::vector<Vec2>& ring, std::vector<double>& crossings, const F& f) const {
-    const Box box = box_of(ring);
+  void each_pixel(const Rings& rings, std::vector<double>& crossings, const F& f) const {
+    const Box box = box_of(rings[0]);
     const double per_row = (window_.y1 - window_.y0) / height_;
     const auto row_of = [&](double y) {
       return static_cast<int>(std::clamp((window_.y1 - y) / per_row, -1., height_ + 1.));
@@ -43,12 +44,7 @@ class Raster {
     for (int row = std::max(row_of(box.y1) - 1, 0); row <= last; ++row) {
       const double y = place(0, row).y();
       crossings.clear();
-      for (size_t i = 0; i < ring.size(); ++i) {
-        Vec2 a = ring[i], b = after(ring, i);
-        if ((a.y() <= y) == (b.y() <= y)) continue;
-        if (a.y() > b.y()) std::swap(a, b);
-        crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
-      }
+      for (const std::vector<Vec2>& ring : rings) add_crossings(ring, y, crossings);
       std::ranges::sort(crossings);
       for (size_t i = 0; i + 1 < crossings.size(); i += 2) {
         const int end = first_right_of(crossings[i + 1]);
@@ -58,6 +54,16 @@ class Raster {
   }
 
  private:
+  static void add_crossings(const std::vector<Vec2>& ring, double y,
+                            std::vector<double>& crossings) {
+    for (size_t i = 0; i < ring.size(); ++i) {
+      Vec2 a = ring[i], b = after(ring, i);
+      if ((a.y() <= y) == (b.y() <= y)) continue;
+      if (a.y() > b.y()) std::swap(a, b);
+      crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+    }
+  }
+
   Box window_;
   int width_, height_;
 };
@@ -73,17 +79,18 @@ std::vector<Colour> paint(const Field& field, const Box& window,
   std::vector<Vec2> relative;
   for (int e = 0; e < field.mesh.element_count(); ++e) {
     const std::span<const int> nodes = field.mesh.element(e);
-    const std::vector<Vec2> ring = field.mesh.places(nodes);
+    const Rings rings = rings_of(field.mesh.nodes, nodes, field.holes, e);
+    const std::vector<Vec2>& ring = rings[0];
     const bool varies = field.nodal && !field.blank[e];
     const Colour even = varies ? kEmpty : field.blank[e] ? kGrey : colour(field.values[e]);
     weights.resize(ring.size());
-    raster.each_pixel(ring, crossings, [&](int column, int row) {
+    raster.each_pixel(rings, crossings, [&](int column, int row) {
       Colour& pixel = pixels[static_cast<size_t>(row) * width + column];
       if (!varies) {
         pixel = even;
         return;
       }
-      relative = ring;
+      relative = ring;  // values in a body with holes follow from those around it
       for (Vec2& p : relative) p -= raster.place(column, row);
       interpolation_weights(relative, weights);
       double value = 0;

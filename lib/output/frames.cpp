@@ -131,7 +131,7 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
   create_folder(folder_ + "/frames");
   write_file(folder_ + "/names.csv", names_table(model_));
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
-    Cells cells = convex_cells(model_.bodies[i].potential.vertices);
+    Cells cells = convex_cells(model_.bodies[i].rings());
     if (cells.size() > 1 || cells[0].size() < model_.bodies[i].potential.vertices.size()) {
       shapes_.cells[i] = std::move(cells);
     }

@@ -118,25 +118,24 @@ class Drawing {
 
   void draw(const Bands& bands) {
     const double r = picture_.reference;
-    canvas_.fill(place(picture_.polygon.local_vertices()), bands.colours[0]);
+    Rings outline = rings_of(picture_.polygon);
+    for (Ring& ring : outline) {
+      for (Vec2& p : ring) p -= picture_.polygon.origin();
+    }
+    canvas_.fill_even_odd(place(outline), bands.colours[0]);
     std::vector<Rings> levels;
     for (size_t i = 1; i < bands.colours.size(); ++i) {
-      const SingularArea level = singular_area(picture_.skeleton, bands.bounds[i] * r);
-      for (const PolygonWithHoles& part : level.polygons) {
-        canvas_.fill(place(rings_of(part)), bands.colours[i]);
-      }
-      levels.push_back(rings_of(level.polygons));
+      levels.push_back(rings_of(singular_area(picture_.skeleton, bands.bounds[i] * r).polygons));
+      canvas_.fill_even_odd(place(levels.back()), bands.colours[i]);
     }
-    for (const PolygonWithHoles& part : picture_.singular.polygons) {
-      canvas_.fill(place(rings_of(part)), viridis(1));
-    }
+    canvas_.fill_even_odd(place(rings_of(picture_.singular.polygons)), viridis(1));
     for (size_t i = kBandsPerLine; i < bands.colours.size(); i += kBandsPerLine) {
       for (const Ring& ring : levels[i - 1]) canvas_.stroke(place(ring), true, kContour);
     }
     draw_faces();
     draw_circles();
     draw_singular_area();
-    canvas_.stroke(place(picture_.polygon.local_vertices()), true, kOutline);
+    for (const Ring& ring : outline) canvas_.stroke(place(ring), true, kOutline);
   }
 
   [[nodiscard]] Pen face_pen() const {
@@ -185,14 +184,20 @@ class Drawing {
   const Axes& axes_;
 };
 
+std::string holes_in_words(const Polygon& polygon) {
+  const int holes = polygon.rings() - 1;
+  return holes == 0 ? "" : fmt::format(", {} hole{}", holes, holes == 1 ? "" : "s");
+}
+
 // The lines of the title.
 std::vector<std::string> title(const PotentialPicture& picture, const View& view,
                                const PictureLayout& layout) {
   std::vector<std::string> lines{
       fmt::format("Distance potential φ, r = {:.6g} m ({})", picture.reference,
                   picture.reference_name),
-      fmt::format("{} vertices, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(),
-                  picture.circle.radius, picture.skeleton.roof_height)};
+      fmt::format("{} vertices{}, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(),
+                  holes_in_words(picture.polygon), picture.circle.radius,
+                  picture.skeleton.roof_height)};
   if (view.stretched) {
     const double x = (layout.frame.x1 - layout.frame.x0) / (layout.window.x1 - layout.window.x0);
     const double y = (layout.frame.y1 - layout.frame.y0) / (layout.window.y1 - layout.window.y0);

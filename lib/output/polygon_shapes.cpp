@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "lib/output/canvas.hpp"
 
 namespace apothem {

@@ -1,5 +1,5 @@
-// Parts of a polygon's geometry as shapes for a file. Numbers of edges are those of the ring as it
-// was given; coordinates are those of its vertices, m.
+// Parts of a polygon's geometry as shapes for a file. Numbers of edges are those of the rings as
+// they were given, one after the other; coordinates are those of its vertices, m.
 #pragma once
 
 #include <vector>

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 
-#include "geometry/polygon/triangulation.hpp"
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/vtk_grid.hpp"
@@ -69,17 +68,12 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
     }
   };
   for (const PolygonWithHoles& part : singular.polygons) {
-    if (part.holes.empty()) {
-      add(VTK_POLYGON, part.outer, convex_cells(part.outer));
-      continue;
-    }
+    const Rings rings = rings_of(part);
     std::vector<Vec2> corners;
-    for (const std::vector<Vec2>& ring : rings_of(part)) {
+    for (const std::vector<Vec2>& ring : rings) {
       corners.insert(corners.end(), ring.begin(), ring.end());
     }
-    std::vector<std::vector<int>> triangles;
-    for (const Triangle& t : triangulate(part)) triangles.emplace_back(t.begin(), t.end());
-    add(VTK_POLYGON, corners, triangles);
+    add(VTK_POLYGON, corners, convex_cells(rings));
   }
   for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends, {{0, 1}});
   for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point}, {{0}});

@@ -52,7 +52,13 @@ Box window_of(const PotentialMap& map) {
 }
 
 void draw_bands(Canvas& canvas, const Axes& axes, const PotentialMap& map) {
-  canvas.fill(axes(map.outline), band_colour(0));
+  if (map.holes.empty()) {
+    canvas.fill(axes(map.outline), band_colour(0));
+  } else {
+    Rings rings{axes(map.outline)};
+    for (const Ring& hole : map.holes) rings.push_back(axes(hole));
+    canvas.fill_even_odd(rings, band_colour(0));
+  }
   Ring line;
   std::vector<Ring> contours;
   for (int band = 1; band <= kBands; ++band) {
@@ -87,6 +93,7 @@ void draw_map(Canvas& canvas, const ShownMap& shown, const Box& frame) {
   if (shown.map.circle) draw_circles(canvas, axes, *shown.map.circle);
   if (shown.map.singular) draw_singular(canvas, axes, *shown.map.singular);
   canvas.stroke(axes(shown.map.outline), true, kOutline);
+  for (const Ring& hole : shown.map.holes) canvas.stroke(axes(hole), true, kOutline);
   for (const MarkedPoint& point : shown.points) {
     const Vec2 at = axes(point.at);
     canvas.circle(at, 3.2, {1, 1, 1}, {{0, 0, 0}, 1});

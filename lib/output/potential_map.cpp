@@ -124,7 +124,9 @@ double outside_by(const PotentialPiece& piece, const Vec2& x) {
 
 PotentialMap potential_map(const Polygon& polygon, MapKind kind, const PotentialChoice& choice) {
   PotentialMap map;
-  map.outline = polygon.vertices();
+  map.holes = rings_of(polygon);
+  map.outline = std::move(map.holes.front());
+  map.holes.erase(map.holes.begin());
   if (kind != MapKind::distance && kind != MapKind::area) require_convex(polygon);
   switch (kind) {
     case MapKind::area_smallest:

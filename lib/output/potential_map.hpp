@@ -41,6 +41,7 @@ struct PotentialPiece {
 /// A potential over a polygon. All coordinates are those of the polygon's vertices.
 struct PotentialMap {
   std::vector<Vec2> outline;
+  Rings holes;
   std::vector<PotentialPiece> pieces;     ///< tile the polygon; phi is limited to 1
   double reference = 0;                   ///< reference length r of the distance potential, m
   std::optional<InscribedCircle> circle;  ///< only of the distance potential

@@ -75,6 +75,20 @@ void add_element(const VtuFile& file, const CellArrays& arrays, size_t c, Frame&
   if (!of_element.present) read_body(arrays, c, of_element);
 }
 
+// Adds the element that these cells are together. Only rigid bodies have holes.
+void add_joined(const std::vector<std::vector<int>>& cells, bool rigid, Frame& frame) {
+  if (!rigid) return frame.mesh.add_element(joined(cells));
+  std::vector<std::vector<int>> rings = rings_around(cells);
+  const auto extent = [&](const std::vector<int>& ring) {
+    return box_of(frame.mesh.places(ring)).extent();
+  };
+  std::ranges::iter_swap(rings.begin(), std::ranges::max_element(rings, {}, extent));
+  if (rings.size() > 1) {
+    frame.holes[frame.mesh.element_count()].assign(rings.begin() + 1, rings.end());
+  }
+  frame.mesh.add_element(rings[0]);
+}
+
 // The stresses of the elements, of which each begins with one of these cells.
 void read_stresses(const VtuFile& file, const std::vector<size_t>& cells, Frame& frame) {
   frame.stress.resize(cells.size());
@@ -88,6 +102,21 @@ void read_stresses(const VtuFile& file, const std::vector<size_t>& cells, Frame&
 }
 
 }  // namespace
+
+Rings rings_of(std::span<const Vec2> places, std::span<const int> element,
+               const ElementHoles& holes, int number) {
+  Rings rings;
+  const auto add = [&](std::span<const int> nodes) {
+    std::vector<Vec2>& ring = rings.emplace_back();
+    for (const int node : nodes) ring.push_back(places[static_cast<size_t>(node)]);
+  };
+  add(element);
+  if (holes.empty()) return rings;
+  if (const auto found = holes.find(number); found != holes.end()) {
+    for (const std::vector<int>& hole : found->second) add(hole);
+  }
+  return rings;
+}
 
 bool all_rigid(const Frame& frame) {
   return std::ranges::none_of(frame.bodies, [](const FrameBody& body) { return body.meshed; });
@@ -180,7 +209,7 @@ Frame RunFolder::frame(size_t number) const {
     } else {
       std::vector<std::vector<int>> parts;
       for (size_t i = c; i < end; ++i) parts.push_back(file.cell(i));
-      frame.mesh.add_element(joined(parts));
+      add_joined(parts, arrays.body(c) < static_cast<double>(names_.rigid_bodies), frame);
     }
     add_element(file, arrays, c, frame);
     first.push_back(c);

@@ -4,10 +4,13 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "geometry/polygon/polygon_with_holes.hpp"
 #include "lib/mesh/mesh.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/model/model.hpp"
@@ -41,11 +44,19 @@ struct FrameBody {
   }
 };
 
+/// The holes of those elements that have any: rings of nodes, clockwise.
+using ElementHoles = std::map<int, std::vector<std::vector<int>>>;
+
+/// The outer ring of an element and its holes, where its nodes have these places.
+Rings rings_of(std::span<const Vec2> places, std::span<const int> element,
+               const ElementHoles& holes, int number);
+
 /// The bodies in one frame: a mesh in which each rigid body is one element, and each finite element
 /// of a meshed body another one.
 struct Frame {
   double time = 0;                 ///< s
   Mesh mesh;                       ///< configuration before the run, m
+  ElementHoles holes;              ///< of rigid bodies
   std::vector<Vec2> position;      ///< of each node in the frame, m, to the bit as written
   std::vector<Vec2> displacement;  ///< of each node, m
   std::vector<Vec2> velocity;      ///< of each node, m/s

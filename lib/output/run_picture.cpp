@@ -26,9 +26,13 @@ void deform(Frame& frame, double factor) {
       shift += share * frame.displacement[i];
     }
     const double angle = factor * frame.body_of(e).rotation();
-    for (const int i : corners) {
+    const auto move = [&](const int i) {
       frame.position[i] =
           middle + factor * shift + turned(Vec2(frame.mesh.nodes[i] - middle), angle);
+    };
+    std::ranges::for_each(corners, move);
+    if (const auto found = frame.holes.find(e); found != frame.holes.end()) {
+      for (const std::vector<int>& hole : found->second) std::ranges::for_each(hole, move);
     }
   }
 }

@@ -160,7 +160,8 @@ std::vector<std::vector<int>> cells_of(const Shape& shape) {
   if (shape.rings.size() == 1) return convex_cells(shape.rings[0]);
   std::vector<std::vector<int>> cells;
   for (const Triangle& triangle :
-       triangulate({shape.rings[0], {shape.rings.begin() + 1, shape.rings.end()}})) {
+       triangulate(PolygonWithHoles{
+           shape.rings[0], {shape.rings.begin() + 1, shape.rings.end()}})) {
     cells.emplace_back(triangle.begin(), triangle.end());
   }
   return cells;

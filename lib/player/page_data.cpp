@@ -128,7 +128,7 @@ class Builder {
   }
 
   void add_shapes() {
-    Integers ring_first{0}, triangles;
+    Integers ring_first{0}, triangles, hole_first, body_holes{0};
     std::vector<float> x, y;
     for (const Shapes::Body& body : run_.shapes.bodies) {
       const auto first = static_cast<std::int32_t>(x.size());
@@ -137,6 +137,8 @@ class Builder {
         y.push_back(static_cast<float>(p.y()));
       }
       ring_first.push_back(static_cast<std::int32_t>(x.size()));
+      for (const int corner : body.holes) hole_first.push_back(first + corner);
+      body_holes.push_back(static_cast<std::int32_t>(hole_first.size()));
       for (const auto& triangle : body.triangles) {
         for (const int corner : triangle) triangles.push_back(first + corner);
       }
@@ -144,6 +146,8 @@ class Builder {
     block.add("ring_first", ring_first, 1);
     block.add("ring_x", x);
     block.add("ring_y", y);
+    block.add("body_holes", body_holes, 1);
+    block.add("hole_first", hole_first, 1);
     block.add("triangles", triangles, 1);
     add_elements();
   }

@@ -80,7 +80,7 @@ class Recorder {
   void add_rigid(const Frame& frame, size_t k, size_t b) {
     const int e = parts_[b].element;
     const FrameBody& body = frame.bodies[b];
-    const Vec2 centroid = measure(ring_of(frame, e)).centroid;
+    const Vec2 centroid = measure(rings_of(frame, e)).centroid;
     out_.place[out_.bodies.size() * k + b] = centroid;
     out_.rotation[out_.bodies.size() * k + b] = body.rotation();
     const int node = frame.mesh.element(e)[0];
@@ -105,7 +105,7 @@ class Recorder {
                    static_cast<size_t>(shape.first_node + node - part.node)] = frame.position[node];
         velocity += frame.velocity[node] / static_cast<double>(nodes.size());
       }
-      const RingMeasure own = measure(ring_of(frame, e));
+      const RingMeasure own = measure(rings_of(frame, e));
       whole.area += own.area;
       whole.centroid += own.area * own.centroid;
       momentum += own.area * velocity;

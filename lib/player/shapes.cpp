@@ -11,10 +11,10 @@
 namespace apothem {
 namespace {
 
-// Convex parts of a ring as fans of triangles.
-std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec2>& ring) {
+// Convex parts of a polygon as fans of triangles.
+std::vector<std::array<int, 3>> triangles_of(const Rings& rings) {
   std::vector<std::array<int, 3>> triangles;
-  for (const std::vector<int>& cell : convex_cells(ring)) {
+  for (const std::vector<int>& cell : convex_cells(rings)) {
     for (size_t i = 1; i + 1 < cell.size(); ++i) {
       triangles.push_back({cell[0], cell[i], cell[i + 1]});
     }
@@ -23,15 +23,18 @@ std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec2>& ring) {
 }
 
 void add_rigid(const Frame& frame, int element, Shapes::Body& body) {
-  std::vector<Vec2> ring = ring_of(frame, element);
-  const RingMeasure whole = measure(ring);
+  const Rings rings = rings_of(frame, element);
+  const RingMeasure whole = measure(rings);
   body.area = whole.area;
-  body.triangles = triangles_of(ring);
-  for (Vec2& p : ring) {
-    p = turned(Vec2(p - whole.centroid), -frame.body_of(element).rotation());
-    body.radius = std::max(body.radius, p.norm());
+  body.triangles = triangles_of(rings);
+  for (const std::vector<Vec2>& ring : rings) {
+    if (!body.ring.empty()) body.holes.push_back(static_cast<int>(body.ring.size()));
+    for (const Vec2& v : ring) {
+      const Vec2 p = turned(Vec2(v - whole.centroid), -frame.body_of(element).rotation());
+      body.radius = std::max(body.radius, p.norm());
+      body.ring.push_back(p);
+    }
   }
-  body.ring = std::move(ring);
 }
 
 void add_meshed(const Frame& frame, int b, const FramePart& part, Shapes& shapes) {
@@ -41,7 +44,7 @@ void add_meshed(const Frame& frame, int b, const FramePart& part, Shapes& shapes
   Mesh mesh;  // of this body alone, for its edges
   Vec2 moment = Vec2::Zero();
   for (int e = part.element; e < part.element + part.elements; ++e) {
-    const RingMeasure of_element = measure(ring_of(frame, e));
+    const RingMeasure of_element = measure(rings_of(frame, e));
     body.area += of_element.area;
     moment += of_element.area * of_element.centroid;
     std::vector<int> nodes;
@@ -55,7 +58,7 @@ void add_meshed(const Frame& frame, int b, const FramePart& part, Shapes& shapes
     Shapes::Element& added = shapes.elements.emplace_back();
     added.body = b;
     added.material = frame.material[e];
-    added.triangles = triangles_of(ring);
+    added.triangles = triangles_of({ring});
     for (int& node : nodes) node += body.first_node;
     for (auto& triangle : added.triangles) {
       for (int& corner : triangle) corner = nodes[corner];
@@ -75,15 +78,19 @@ void add_meshed(const Frame& frame, int b, const FramePart& part, Shapes& shapes
 
 }  // namespace
 
-std::vector<Vec2> ring_of(const Frame& frame, int element) {
-  std::vector<Vec2> ring;
-  for (const int node : frame.mesh.element(element)) ring.push_back(frame.position[node]);
-  return ring;
+Rings rings_of(const Frame& frame, int element) {
+  return rings_of(frame.position, frame.mesh.element(element), frame.holes, element);
 }
 
-RingMeasure measure(const std::vector<Vec2>& ring) {
-  const RingMoments m = ring_moments(ring, ring[0]);
-  return {ring[0] + (m.area != 0 ? Vec2(m.first / m.area) : Vec2(0, 0)), m.area};
+RingMeasure measure(const Rings& rings) {
+  const Vec2& base = rings[0][0];
+  RingMoments m = ring_moments(rings[0], base);
+  for (size_t k = 1; k < rings.size(); ++k) {
+    const RingMoments hole = ring_moments(rings[k], base);
+    m.area += hole.area;
+    m.first += hole.first;
+  }
+  return {base + (m.area != 0 ? Vec2(m.first / m.area) : Vec2(0, 0)), m.area};
 }
 
 std::vector<FramePart> parts_of(const Frame& frame) {

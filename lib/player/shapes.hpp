@@ -11,7 +11,7 @@ namespace apothem {
 /// Shapes of bodies. Nodes and elements of all meshed bodies are numbered one body after the other,
 /// in the order in which frames first show the bodies.
 struct Shapes {
-  /// A body: rigid ones have a ring, meshed ones have elements.
+  /// A body: rigid ones have a ring, and behind it those of its holes; meshed ones have elements.
   struct Body {
     bool known = false;  ///< whether a frame has shown it
     bool meshed = false;
@@ -19,7 +19,8 @@ struct Shapes {
     double area = 0;                                 ///< m^2
     double radius = 0;                               ///< of the circle about the centroid, m
     std::vector<Vec2> ring = {};                     ///< about the centroid, before any rotation, m
-    std::vector<std::array<int, 3>> triangles = {};  ///< corners of the ring
+    std::vector<int> holes = {};                     ///< where rings of holes begin in `ring`
+    std::vector<std::array<int, 3>> triangles = {};  ///< corners of the rings
     int first_node = 0, first_element = 0;
   };
   /// An element of a meshed body; numbers of nodes.
@@ -52,14 +53,14 @@ struct FramePart {
 };
 std::vector<FramePart> parts_of(const Frame& frame);
 
-/// Centroid (m) and area (m^2) of a simple ring.
+/// Centroid (m) and area (m^2) of a polygon: an outer ring and holes, clockwise.
 struct RingMeasure {
   Vec2 centroid = Vec2::Zero();
   double area = 0;
 };
-RingMeasure measure(const std::vector<Vec2>& ring);
+RingMeasure measure(const Rings& rings);
 
-/// The corners of an element where they are in the frame, m.
-std::vector<Vec2> ring_of(const Frame& frame, int element);
+/// The rings of an element where they are in the frame, m.
+Rings rings_of(const Frame& frame, int element);
 
 }  // namespace apothem

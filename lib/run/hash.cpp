@@ -41,6 +41,7 @@ std::string scene_hash(const Scene& scene) {
     hash.add(&body.material, sizeof body.material);
     hash.add(&body.motion, sizeof body.motion);
     for (const Vec2& v : body.potential.vertices) hash.add(v);
+    if (body.potential.links) hash.add(body.potential.links->starts);
   }
   for (const DeformableBody& body : scene.model.deformables) {
     hash.add(body.name);
@@ -57,6 +58,7 @@ std::string potentials_hash(const Model& model) {
     const Potential& p = body.potential;
     hash.add(p.vertices), hash.add(p.gradients), hash.add(p.top_points);
     hash.add(p.top), hash.add(p.steepest);
+    if (p.links) hash.add(p.links->starts);
     if (p.roof) {
       hash.add(p.roof->points), hash.add(p.roof->values), hash.add(p.roof->arcs);
       for (const std::vector<int>& face : p.roof->faces) hash.add(face);

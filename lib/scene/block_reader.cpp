@@ -64,9 +64,16 @@ BlockReader::Shape BlockReader::shape(const JsonValue& value) const {
   object.read("weight", shape.weight, &JsonReader::positive, "");
   int kinds = 0;
   if (const JsonValue* v = object.optional("polygon")) {
-    const Polygon polygon = read_polygon(in_, *v);
+    const JsonValue* holes = object.optional("holes");
+    const Polygon polygon = read_polygon(in_, *v, holes);
     shape.own_diameter = std::sqrt(area_moments(polygon).area / disc_area(1));
-    shape.ring = [ring = normalised(polygon.vertices())](RandomNumbers&) { return ring; };
+    if (polygon.has_holes()) {
+      PolygonWithHoles block = normalised_with_holes(polygon);
+      shape.ring = [ring = std::move(block.outer)](RandomNumbers&) { return ring; };
+      shape.holes = std::move(block.holes);
+    } else {
+      shape.ring = [ring = normalised(polygon.vertices())](RandomNumbers&) { return ring; };
+    }
     ++kinds;
   }
   if (const JsonValue* v = object.optional("quadrilateral"))
@@ -201,6 +208,10 @@ BlockReader::Draw BlockReader::table(const JsonValue& value) const {
   };
 }
 
+bool BlockReader::have_holes() const {
+  return std::ranges::any_of(shapes_, [](const Shape& s) { return !s.holes.empty(); });
+}
+
 Block BlockReader::draw(RandomNumbers& random) const {
   double weights = 0;
   for (const Shape& s : shapes_) weights += s.weight;
@@ -209,6 +220,7 @@ Block BlockReader::draw(RandomNumbers& random) const {
   for (; i + 1 < shapes_.size() && left >= shapes_[i].weight; ++i) left -= shapes_[i].weight;
   Block block;
   block.shape = shapes_[i].ring(random);
+  block.holes = shapes_[i].holes;
   const double d = diameter_ ? diameter_(random) : *shapes_[i].own_diameter;
   block.scale = std::sqrt(disc_area(d));
   block.angle = angles_[0] < angles_[1] ? random.uniform(angles_[0], angles_[1]) : angles_[0];

@@ -22,16 +22,19 @@ class BlockReader {
   void read(JsonObject& fill);
   /// The next block. Needs read().
   [[nodiscard]] Block draw(RandomNumbers& random) const;
+  /// Whether one of the shapes has holes.
+  [[nodiscard]] bool have_holes() const;
   /// Whether blocks have different angles.
   [[nodiscard]] bool turn() const { return angles_[0] < angles_[1]; }
 
  private:
-  // A number, or a ring of area 1, that is drawn for each block.
+  // A number, or a shape of area 1, that is drawn for each block.
   using Draw = std::function<double(RandomNumbers&)>;
   using DrawRing = std::function<std::vector<Vec2>(RandomNumbers&)>;
   struct Shape {
     double weight = 1;
     DrawRing ring;
+    Rings holes;
     std::optional<double> own_diameter;  // m
   };
   using Bounds = std::array<double, 2>;

@@ -78,21 +78,34 @@ Potentials BodyReader::find_potentials() const {
   return {std::move(polygons), model_.contact.potential, processors};
 }
 
-std::vector<std::vector<Vec2>> BodyReader::outlines() const {
-  std::vector<std::vector<Vec2>> rings;
+std::vector<PolygonWithHoles> BodyReader::outlines() const {
+  std::vector<PolygonWithHoles> outlines;
   for (size_t i = 0; i < shapes_.size(); ++i) {
+    const auto there = [&](const std::vector<Vec2>& ring, const Vec2& centre) {
+      return moved(*values_[i], ring, centre);
+    };
     if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
       const Vec2 centre = polygon->origin() + area_moments(*polygon).centroid;
-      rings.push_back(moved(*values_[i], polygon->vertices(), centre));
+      PolygonWithHoles& outline = outlines.emplace_back();
+      for (const std::vector<Vec2>& ring : rings_of(*polygon)) {
+        (outline.outer.empty() ? outline.outer : outline.holes.emplace_back()) =
+            there(ring, centre);
+      }
       continue;
     }
     const Mesh& mesh = std::get<MeshSpec>(shapes_[i]).mesh;
-    for (const BoundaryLoop& loop : boundary(mesh).loops) {
-      if (loop.is_hole) continue;
-      rings.push_back(moved(*values_[i], mesh.places(loop.nodes), mesh_centroid(mesh)));
+    const Vec2 centre = mesh_centroid(mesh);
+    const Boundary border = boundary(mesh);
+    for (const BoundaryLoop& loop : border.loops) {
+      std::vector<Vec2> ring = there(mesh.places(loop.nodes), centre);
+      if (!loop.is_hole) {
+        outlines.push_back({std::move(ring), {}});
+      } else if (border.components == 1) {
+        outlines.back().holes.push_back(std::move(ring));
+      }
     }
   }
-  return rings;
+  return outlines;
 }
 
 // To where "position" and "angle" put the centre.
@@ -114,16 +127,23 @@ BodyIndex BodyReader::body_at(size_t place) const {
 
 BodyReader::Shape BodyReader::read_shape(const JsonValue& value) {
   JsonObject object(in_, value);
+  const JsonValue* holes = object.optional("holes");
   if (const JsonValue* mesh = object.optional("mesh")) {
     if (const JsonValue* v = object.optional("polygon")) {
       in_.fail(*v,
                "a body is rigid with a \"polygon\" or deformable with a \"mesh\": leave one out");
     }
+    if (holes) {
+      in_.fail(*holes,
+               "belongs to a \"polygon\": the holes of a body with a mesh stand beside the polygon "
+               "of its \"fill\"");
+    }
     return read_mesh(in_, *mesh);
   }
-  return read_polygon(in_, object.required("polygon",
-                                           "[[x,y],...] in m, or the name of a file; "
-                                           "or a \"mesh\""));
+  const JsonValue& outline = object.required("polygon",
+                                             "[[x,y],...] in m, or the name of a file; "
+                                             "or a \"mesh\"");
+  return read_polygon(in_, outline, holes);
 }
 
 // A box around the place where the body starts, in world coordinates.
@@ -146,6 +166,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon,
   numbers_.push_back(static_cast<int>(model_.bodies.size()));
   features_.add(Feature::rigid_body, &value, place());
   object.required("polygon", "");
+  object.optional("holes");
   if (const JsonValue* v = object.optional("materials")) {
     features_.add(Feature::element_materials, v, place());
   }
@@ -178,7 +199,7 @@ void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon,
   try {
     set_shape(body, polygon, potential(), model_);
   } catch (const InvalidPolygon& error) {
-    refuse_polygon(in_, outline, error);
+    refuse_polygon(in_, outline, error, value.find("holes"));
   }
   if (!(body.mass > 0 && body.inertia > 0 && std::isfinite(1 / body.mass) &&
         std::isfinite(1 / body.inertia) && std::isfinite(body.potential.steepest))) {

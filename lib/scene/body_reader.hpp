@@ -33,8 +33,9 @@ class BodyReader {
   /// Adds rigid bodies that have all but their names and polygons in common, which are then the
   /// next ones in the list. `alike` is one of them, without a number in its name.
   void add(const JsonValue& alike, std::vector<Polygon> polygons);
-  /// The rings around all bodies so far, where they start, in world coordinates, m.
-  [[nodiscard]] std::vector<std::vector<Vec2>> outlines() const;
+  /// The outlines of all bodies so far, where they start, in world coordinates, m. Of a mesh in
+  /// several parts those around the parts, without holes.
+  [[nodiscard]] std::vector<PolygonWithHoles> outlines() const;
   /// Reads all bodies, when all shapes are known. Throws SceneError.
   void read();
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "geometry/packing/block_shapes.hpp"
 #include "geometry/packing/voronoi_blocks.hpp"
 #include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/hilbert.hpp"
@@ -44,13 +45,12 @@ class Fill {
   Fill(const JsonReader& in, const JsonValue& value)
       : in_(in), value_(value), make_(value), blocks_(in) {}
 
-  Filled read(std::vector<std::vector<Vec2>>& obstacles) {
+  Filled read(std::vector<PolygonWithHoles>& obstacles) {
     JsonObject object(in_, value_);
     name_ = in_.string(object.required("name", "a string; bodies are called NAME-0, NAME-1, ..."));
     object.required("material", "the name of a material");
     const JsonValue& region = object.required("region", "[[x,y],...] in m");
-    outline_.emplace(read_polygon(in_, region));
-    object.each("holes", [&](const JsonValue& hole) { holes_.push_back(read_polygon(in_, hole)); });
+    read_region(region, object.optional("holes"));
     object.choose("arrangement", arranged_, {"random", "lattice", "dense", "voronoi"});
     object.read("gap", gap_, &JsonReader::not_negative, "m");
     const JsonValue* seed = object.optional("seed");
@@ -80,7 +80,7 @@ class Fill {
         for (const std::vector<Vec2>& ring : first) area += ring_area(ring);
         refuse_too_many(filled.count, area, filled.batches);
       }
-      obstacles.insert(obstacles.end(), first.begin(), first.end());
+      for (std::vector<Vec2>& ring : first) obstacles.push_back({std::move(ring), {}});
     }
     filled.batch = filled.count / filled.batches;
     if (!element_) {
@@ -91,6 +91,18 @@ class Fill {
   }
 
  private:
+  // The file of a region may have holes as well.
+  void read_region(const JsonValue& region, const JsonValue* holes) {
+    constexpr const char* kNoHole = "a hole of the region is one ring";
+    Rings rings = rings_of(read_polygon(in_, region));
+    for (size_t i = 1; i < rings.size(); ++i) holes_.emplace_back(std::move(rings[i]));
+    outline_.emplace(std::move(rings[0]));
+    if (!holes) return;
+    for (const JsonValue& hole : in_.array(*holes)) {
+      holes_.push_back(read_polygon_without_holes(in_, hole, kNoHole));
+    }
+  }
+
   void mesh(const JsonValue* value) {
     if (!value) return;
     JsonObject object(in_, *value);
@@ -125,14 +137,24 @@ class Fill {
       }
     }
     if (!holes_.empty()) {
-      in_.fail(*value_.find("holes"),
+      in_.fail(place_of_holes(),
                "Voronoi cells of a region with holes are not supported yet; cut the region so that "
                "it has none");
     }
   }
 
+  [[nodiscard]] const JsonValue& place_of_holes() const {
+    const JsonValue* holes = value_.find("holes");
+    return holes ? *holes : *value_.find("region");
+  }
+
   void blocks(JsonObject& object) {
     blocks_.read(object);
+    if (element_ && element_->kind == ElementKind::polygon && blocks_.have_holes()) {
+      in_.fail(*value_.find("mesh"),
+               "cells of blocks with holes are not supported yet; take \"element\": \"T3\" or "
+               "\"Q4\"");
+    }
     const JsonValue* count = object.optional("count");
     const JsonValue* fraction = object.optional("solid_fraction");
     if (!count == !fraction) {
@@ -168,18 +190,18 @@ class Fill {
     }
   }
 
-  [[nodiscard]] PackingSpace space_of(const std::vector<std::vector<Vec2>>& obstacles,
+  [[nodiscard]] PackingSpace space_of(const std::vector<PolygonWithHoles>& obstacles,
                                       double size) const {
     for (const Polygon& hole : holes_) {
       for (const Vec2& v : hole.vertices()) {
         const Box box = bounding_box(*outline_);
         if (v.x() < box.x0 || v.x() > box.x1 || v.y() < box.y0 || v.y() > box.y1) {
-          in_.fail(*value_.find("holes"), "must lie inside the region");
+          in_.fail(place_of_holes(), "must lie inside the region");
         }
       }
     }
     PackingSpace space(*outline_, holes_, gap_, size);
-    for (const std::vector<Vec2>& ring : obstacles) space.add_obstacle(ring);
+    for (const PolygonWithHoles& obstacle : obstacles) space.add_obstacle(obstacle);
     return space;
   }
 
@@ -198,7 +220,7 @@ class Fill {
                          bytes / 1e9, there / 1e9));
   }
 
-  std::vector<std::vector<Vec2>> add_blocks(const std::vector<std::vector<Vec2>>& obstacles,
+  std::vector<std::vector<Vec2>> add_blocks(const std::vector<PolygonWithHoles>& obstacles,
                                             RandomNumbers& random, Filled& filled) {
     double area = area_moments(*outline_).area;
     for (const Polygon& hole : holes_) area -= area_moments(hole).area;
@@ -214,10 +236,18 @@ class Fill {
     std::vector<std::vector<Vec2>> rings;
     rings.reserve(found.rings.size());
     for (const int i : along_curve(found.rings)) {
-      add_body(filled, found.rings[i]);
+      add_body(filled, {found.rings[i], holes_of(blocks[i], found.poses[i])});
       rings.push_back(found.rings[i]);
     }
     return rings;
+  }
+
+  static Rings holes_of(const Block& block, const BlockPose& pose) {
+    Rings holes;
+    for (const std::vector<Vec2>& hole : block.holes) {
+      holes.push_back(placed(hole, pose.place, pose.angle, pose.scale));
+    }
+    return holes;
   }
 
   // The numbers of blocks are such that neighbours in space are near each other in memory.
@@ -258,7 +288,7 @@ class Fill {
     }
   }
 
-  void add_cells(std::vector<std::vector<Vec2>>& obstacles, Filled& filled) const {
+  void add_cells(std::vector<PolygonWithHoles>& obstacles, Filled& filled) const {
     const double size = std::sqrt(area_moments(*outline_).area / cells_.cells);
     const PackingSpace space = space_of(obstacles, size);
     try {
@@ -270,26 +300,26 @@ class Fill {
                    "a cell of the region overlaps a body of the scene; keep bodies out of "
                    "the region");
         }
-        add_body(filled, ring);
-        obstacles.push_back(ring);
+        add_body(filled, {ring, {}});
+        obstacles.push_back({ring, {}});
       }
     } catch (const std::invalid_argument& error) {
       in_.fail(value_, error.what());
     }
   }
 
-  void add_body(Filled& filled, const std::vector<Vec2>& ring) const {
+  void add_body(Filled& filled, const PolygonWithHoles& shape) const {
     const int number = filled.count++;
     if (!element_) {
       try {
-        filled.polygons.emplace_back(ring);
+        filled.polygons.emplace_back(shape);
       } catch (const InvalidPolygon& error) {
         refuse_polygon(in_, value_, error);
       }
       return;
     }
     JsonValue body = this->body(numbered(name_, number));
-    make_.add(body, "mesh", mesh_value(ring, static_cast<size_t>(number)));
+    make_.add(body, "mesh", mesh_value(shape, static_cast<size_t>(number)));
     filled.bodies.push_back(std::move(body));
   }
 
@@ -303,12 +333,13 @@ class Fill {
     return body;
   }
 
-  [[nodiscard]] JsonValue mesh_value(const std::vector<Vec2>& ring, size_t number) const {
+  [[nodiscard]] JsonValue mesh_value(const PolygonWithHoles& shape, size_t number) const {
     JsonValue way = make_.object();
-    make_.add(way, "polygon", make_.ring(ring));
+    make_.add(way, "polygon", make_.ring(shape.outer));
+    if (!shape.holes.empty()) make_.add(way, "holes", make_.rings(shape.holes));
     const bool cells = element_->kind == ElementKind::polygon;
     if (cells) {
-      const double count = std::max(1., std::round(ring_area(ring) / (mesh_size_ * mesh_size_)));
+      const double count = std::max(1., std::round(ring_area(shape.outer) / (mesh_size_ * mesh_size_)));
       make_.add(way, "cells", make_.number(count));
       make_.add(way, "seed", make_.number(static_cast<double>(number)));
     } else {
@@ -341,7 +372,7 @@ class Fill {
 }  // namespace
 
 std::vector<Filled> read_fills(const JsonReader& in, const JsonValue& list,
-                               std::vector<std::vector<Vec2>> obstacles) {
+                               std::vector<PolygonWithHoles> obstacles) {
   std::vector<Filled> fills;
   for (const JsonValue& value : in.array(list)) fills.push_back(Fill(in, value).read(obstacles));
   return fills;

@@ -22,8 +22,9 @@ struct Filled {
 };
 
 /// Reads the scene's list of fills, each of which stays clear of those before it and of the
-/// `obstacles`: rings (m) of the bodies that the scene has already. Throws SceneError.
+/// `obstacles`: the bodies that the scene has already (m). Blocks may lie in holes of these, but
+/// not in those of other blocks. Throws SceneError.
 std::vector<Filled> read_fills(const JsonReader& in, const JsonValue& list,
-                               std::vector<std::vector<Vec2>> obstacles);
+                               std::vector<PolygonWithHoles> obstacles);
 
 }  // namespace apothem

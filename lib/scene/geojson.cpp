@@ -19,11 +19,12 @@ const JsonValue& only_item(const JsonReader& in, const JsonValue& list, const ch
   in.fail(list, fmt::format("holds {} {}; {}", items.size(), what, kOnePolygon));
 }
 
-RingText outer_ring(const JsonReader& in, const JsonValue& rings) {
+PolygonText rings_of(const JsonReader& in, const JsonValue& rings) {
   const std::vector<JsonValue>& items = in.array(rings);
   if (items.empty()) in.fail(rings, "the polygon is empty; give it three vertices or more");
-  if (items.size() > 1) in.fail(items[1], "the polygon has a hole; give a simple polygon");
-  return ring_text(in, items[0]);
+  PolygonText text{ring_text(in, items[0]), {}};
+  for (size_t i = 1; i < items.size(); ++i) text.holes.push_back(ring_text(in, items[i]));
+  return text;
 }
 
 }  // namespace
@@ -35,7 +36,14 @@ RingText ring_text(const JsonReader& in, const JsonValue& ring) {
   return text;
 }
 
-RingText ring_of_geojson(const JsonReader& in, const JsonValue& object) {
+PolygonText polygon_text(const JsonReader& in, const JsonValue& outer, const JsonValue* holes) {
+  PolygonText text{ring_text(in, outer), {}};
+  if (!holes) return text;
+  for (const JsonValue& hole : in.array(*holes)) text.holes.push_back(ring_text(in, hole));
+  return text;
+}
+
+PolygonText polygon_of_geojson(const JsonReader& in, const JsonValue& object) {
   if (object.type() != JsonValue::Type::object) in.fail(object, "must be an object of GeoJSON");
   const std::vector<std::string> types{
       "Polygon", "MultiPolygon", "Feature",    "FeatureCollection", "GeometryCollection",
@@ -44,15 +52,15 @@ RingText ring_of_geojson(const JsonReader& in, const JsonValue& object) {
   const int kind = in.choice(type, types);
   switch (kind) {
     case 0:
-      return outer_ring(in, member(in, object, "coordinates"));
+      return rings_of(in, member(in, object, "coordinates"));
     case 1:
-      return outer_ring(in, only_item(in, member(in, object, "coordinates"), "polygons"));
+      return rings_of(in, only_item(in, member(in, object, "coordinates"), "polygons"));
     case 2:
-      return ring_of_geojson(in, member(in, object, "geometry"));
+      return polygon_of_geojson(in, member(in, object, "geometry"));
     case 3:
-      return ring_of_geojson(in, only_item(in, member(in, object, "features"), "features"));
+      return polygon_of_geojson(in, only_item(in, member(in, object, "features"), "features"));
     case 4:
-      return ring_of_geojson(in, only_item(in, member(in, object, "geometries"), "geometries"));
+      return polygon_of_geojson(in, only_item(in, member(in, object, "geometries"), "geometries"));
     default:
       in.fail(type, fmt::format("is a {}; give a Polygon", types[static_cast<size_t>(kind)]));
   }

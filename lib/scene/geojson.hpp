@@ -6,12 +6,16 @@
 
 namespace apothem {
 
-/// The ring of an object of type Polygon, or of one that holds a single polygon: a Feature, a
+/// The rings of an object of type Polygon, or of one that holds a single polygon: a Feature, a
 /// FeatureCollection, a GeometryCollection or a MultiPolygon. Properties and coordinate systems are
-/// not used. Throws SceneError for anything else: holes, further polygons, empty ones.
-RingText ring_of_geojson(const JsonReader& in, const JsonValue& object);
+/// not used. Throws SceneError for anything else: further polygons, empty ones.
+PolygonText polygon_of_geojson(const JsonReader& in, const JsonValue& object);
 
 /// A ring [[x, y], ...] with the lines of its vertices. Throws SceneError.
 RingText ring_text(const JsonReader& in, const JsonValue& ring);
+
+/// A polygon whose rings are these values; `holes`, an array of them, may be null. Throws
+/// SceneError.
+PolygonText polygon_text(const JsonReader& in, const JsonValue& outer, const JsonValue* holes);
 
 }  // namespace apothem

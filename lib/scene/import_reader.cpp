@@ -56,6 +56,9 @@ class Import {
     if (const JsonValue* v = object.optional("faults")) {
       rules_.skip_faults = in_.choice(*v, {"refuse", "skip"}) == 1;
     }
+    if (const JsonValue* v = object.optional("holes")) {
+      rules_.nested_holes = in_.choice(*v, {"separate", "nested"}) == 1;
+    }
     layers_ = object.optional("layers");
     read_body_keys(object);
     if (layers_ == nullptr) return;
@@ -109,7 +112,6 @@ class Import {
   }
 
   std::vector<Outline> read_outlines_of_file() {
-    rules_.may_have_holes = [this](const std::string& layer) { return mesh_of(layer) != nullptr; };
     try {
       const Drawing drawing = read_drawing(file_beside(in_, file_->string()));
       check_layers(drawing);
@@ -203,21 +205,22 @@ class Import {
     const JsonValue* mesh = mesh_of(outline.layer);
     if (mesh == nullptr) {
       ValueMaker::add(body, "polygon", make_.ring(outline.rings[0]));
+      if (outline.rings.size() > 1) ValueMaker::add(body, "holes", make_.rings(holes_of(outline)));
     } else {
       ValueMaker::add(body, "mesh", filled(outline, *mesh));
     }
     return body;
   }
 
+  static Rings holes_of(const Outline& outline) {
+    return {outline.rings.begin() + 1, outline.rings.end()};
+  }
+
   static JsonValue filled(const Outline& outline, const JsonValue& mesh) {
     const ValueMaker make(mesh);
     JsonValue fill = make.make(JsonValue::Type::object);
     ValueMaker::add(fill, "polygon", make.ring(outline.rings[0]));
-    JsonValue holes = make.make(JsonValue::Type::array);
-    for (size_t i = 1; i < outline.rings.size(); ++i) {
-      ValueMaker::add(holes, make.ring(outline.rings[i]));
-    }
-    ValueMaker::add(fill, "holes", std::move(holes));
+    ValueMaker::add(fill, "holes", make.rings(holes_of(outline)));
     ValueMaker::add(fill, "size", *mesh.find("size"));
     JsonValue value = make.make(JsonValue::Type::object);
     ValueMaker::add(value, "fill", std::move(fill));

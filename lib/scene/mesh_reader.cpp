@@ -135,12 +135,11 @@ class MeshReader {
 
   Mesh fill(const JsonValue& value) const {
     JsonObject object(in_, value);
-    const Polygon outline = read_polygon(in_, outline_of(object));
-    std::vector<Polygon> holes;
-    object.each("holes", [&](const JsonValue& hole) { holes.push_back(read_polygon(in_, hole)); });
+    const JsonValue& outline = outline_of(object);
+    const Polygon region = read_polygon(in_, outline, object.optional("holes"));
     const double size = in_.positive(object.required("size", "of the elements, in m"), "m");
     object.finish();
-    return fill_mesh(outline, holes, size, shape());
+    return fill_mesh(region, size, shape());
   }
 
   Mesh voronoi(const JsonValue& value) const {
@@ -152,7 +151,11 @@ class MeshReader {
     object.read("shortest_edge", options.shortest_edge, &JsonReader::number, "");
     const JsonValue* size = object.optional("size");
     const Polygon region =
-        size != nullptr ? block(object, *size) : read_polygon(in_, outline_of(object));
+        size != nullptr
+            ? block(object, *size)
+            : read_polygon_without_holes(in_, outline_of(object),
+                                         "Voronoi cells around holes are not supported yet: take "
+                                         "\"fill\", or cut the region so that it has none");
     object.finish();
     return mesh_of_cells(region, in_world(region, voronoi_mesh(region, options).mesh));
   }

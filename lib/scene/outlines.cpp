@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <map>
 
 #include "geometry/exact/overlap.hpp"
 #include "geometry/polygon/cyclic.hpp"
@@ -67,6 +68,7 @@ class OutlineMaker {
                             : "holds no closed outline; draw closed polylines or polygons") +
                        (left_out.empty() ? "" : fmt::format(" (left out: {})", left_out)));
     }
+    if (rules_.nested_holes) cut_nested_holes();
     look_for_covered();
     count_hatches();
     std::set<std::int32_t> numbers(hatches_);
@@ -142,29 +144,27 @@ class OutlineMaker {
       add_repaired(shape);
       return;
     }
-    std::vector<std::vector<Vec2>> rings;
+    Rings rings;
     for (const auto& ring : shape.rings) rings.push_back(cleaned(ring));
     add_rings(shape, std::move(rings));
   }
 
-  void require_no_holes(const DrawnShape& shape) const {
-    if (rules_.may_have_holes(shape.layer)) return;
-    refuse(shape,
-           "has a hole, and rigid bodies have none; divide it into outlines without "
-           "holes, or give its bodies a \"mesh\"");
+  static Polygon polygon_of(const Rings& rings) {
+    return {rings[0], {rings.begin() + 1, rings.end()}};
   }
 
-  // An outline of valid rings: the outer one and holes.
-  void add_rings(const DrawnShape& shape, std::vector<std::vector<Vec2>> rings) {
-    if (rings.size() > 1) require_no_holes(shape);
-    std::vector<Polygon> polygons;
+  // An outline by its rings: the outer one and holes.
+  void add_rings(const DrawnShape& shape, Rings rings) {
     try {
-      for (const auto& ring : rings) polygons.emplace_back(ring);
+      add_outline(shape, polygon_of(rings), std::move(rings));
     } catch (const InvalidPolygon& error) {
       refuse(shape,
              fmt::format("{}; correct the drawing there, or say \"repair\": true", error.what()));
     }
-    polygons_.push_back(std::move(polygons.front()));
+  }
+
+  void add_outline(const DrawnShape& shape, Polygon polygon, Rings rings) {
+    polygons_.push_back(std::move(polygon));
     outlines_.push_back({std::move(rings), shape.layer, shape.name, shape.place, shape.entity});
   }
 
@@ -175,11 +175,10 @@ class OutlineMaker {
       const RepairedShape repaired = repair_shape(clean, rules_.tolerance.value_or(0));
       if (repaired.result.polygons.empty()) refuse(shape, "surrounds nothing; take it out");
       // All of its parts are taken or none of them.
-      for (const PolygonWithHoles& polygon : repaired.result.polygons) {
-        if (!polygon.holes.empty()) require_no_holes(shape);
-      }
-      for (const PolygonWithHoles& polygon : repaired.result.polygons) {
-        add_rings(shape, rings_of(polygon));
+      std::vector<Polygon> parts;
+      for (const PolygonWithHoles& part : repaired.result.polygons) parts.emplace_back(part);
+      for (size_t i = 0; i < parts.size(); ++i) {
+        add_outline(shape, std::move(parts[i]), rings_of(repaired.result.polygons[i]));
       }
       report_.faults.insert(report_.faults.end(), repaired.faults.begin(), repaired.faults.end());
     } catch (const InvalidPolygon& error) {
@@ -233,18 +232,100 @@ class OutlineMaker {
     face.name = found->name;
   }
 
-  void look_for_covered() {
+  [[nodiscard]] std::vector<BoxPair> near_pairs() const {
     std::vector<Box> boxes;
     for (const Polygon& polygon : polygons_) boxes.push_back(bounding_box(polygon));
     std::vector<BoxPair> pairs;
     BoxGrid().find_pairs(boxes, pairs);
-    for (const BoxPair& pair : pairs) {
+    return pairs;
+  }
+
+  // Whether an outline lies inside of another one, and not in a hole of it, as far as its first
+  // vertex tells that is not on the other's boundary.
+  static bool is_inside(const Polygon& inner, const Polygon& outer) {
+    if (!contains(bounding_box(outer), bounding_box(inner))) return false;
+    for (const Vec2& v : inner.outer_ring()) {
+      if (const int side = side_of(outer, v)) return side > 0;
+    }
+    return false;
+  }
+
+  // For each outline those of its layer that it lies inside of.
+  [[nodiscard]] std::vector<std::vector<std::int32_t>> find_enclosing() const {
+    std::vector<std::vector<std::int32_t>> enclosing(outlines_.size());
+    for (const auto& [a, b] : near_pairs()) {
+      if (std::max(a, b) >= first_face_) continue;  // faces have their holes
+      if (outlines_[a].layer != outlines_[b].layer) continue;
+      if (is_inside(polygons_[a], polygons_[b])) enclosing[a].push_back(b);
+      if (is_inside(polygons_[b], polygons_[a])) enclosing[b].push_back(a);
+    }
+    return enclosing;
+  }
+
+  // An outline inside of an odd number of others is a hole of the innermost of them.
+  void cut_nested_holes() {
+    const std::vector<std::vector<std::int32_t>> enclosing = find_enclosing();
+    std::map<std::int32_t, std::vector<std::int32_t>> holes;  // by the outline that has them
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(enclosing.size()); ++i) {
+      if (enclosing[i].size() % 2 == 0) continue;
+      const auto depth = [&](std::int32_t k) { return enclosing[k].size(); };
+      holes[*std::ranges::max_element(enclosing[i], {}, depth)].push_back(i);
+    }
+    std::set<std::int32_t> gone;
+    for (const auto& [outer, inner] : holes) {
+      gone.insert(inner.begin(), inner.end());
+      const Outline& outline = outlines_[outer];
+      const bool cut = unless_faulty(shape_of(outline), [&] { cut_holes(outer, inner); });
+      if (cut) continue;
+      gone.insert(outer);
+      uncount(outline.entity);
+    }
+    take_out(gone);
+    for (const std::int32_t number : std::vector(gone.rbegin(), gone.rend())) {
+      polygons_.erase(polygons_.begin() + number);
+    }
+    if (first_face_ < INT32_MAX) first_face_ -= static_cast<std::int32_t>(gone.size());
+  }
+
+  void cut_holes(std::int32_t outer, const std::vector<std::int32_t>& inner) {
+    Outline& outline = outlines_[outer];
+    Rings rings = outline.rings;
+    for (const std::int32_t hole : inner) {
+      const Outline& cut = outlines_[hole];
+      if (cut.rings.size() > 1) {
+        refuse(cut, fmt::format("lies inside of {} and has a hole itself; draw what lies in the "
+                                "hole as an outline, or on another layer",
+                                shown_place(outline.place, outline.layer)));
+      }
+      rings.push_back(cut.rings[0]);
+    }
+    try {
+      polygons_[outer] = polygon_of(rings);
+    } catch (const InvalidPolygon& error) {
+      refuse(outline, fmt::format("{}; correct the drawing there", error.what()));
+    }
+    outline.rings = std::move(rings);
+  }
+
+  static DrawnShape shape_of(const Outline& outline) {
+    DrawnShape shape{};
+    shape.place = outline.place, shape.layer = outline.layer, shape.entity = outline.entity;
+    return shape;
+  }
+
+  // An outline that is not taken after all.
+  void uncount(const std::string& entity) {
+    if (--report_.read[entity] == 0) report_.read.erase(entity);
+  }
+
+  void look_for_covered() {
+    for (const BoxPair& pair : near_pairs()) {
       if (pair.first >= first_face_) continue;  // faces do not overlap each other
       const Polygon &a = polygons_[pair.first], &b = polygons_[pair.second];
-      if (outlines_[pair.first].rings.size() + outlines_[pair.second].rings.size() > 2) continue;
       double shared = 0;
       for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
         shared += ring_area(part.vertices);
+        for (const OverlapRing& hole : part.holes) shared += ring_area(hole.vertices);
       }
       const double areas[]{area_moments(a).area, area_moments(b).area};
       const double smaller = std::min(areas[0], areas[1]), larger = std::max(areas[0], areas[1]);
@@ -255,15 +336,16 @@ class OutlineMaker {
         continue;
       }
       if (rules_.skip_faults && covered_.count(pair.first)) continue;
-      DrawnShape shape{};
-      shape.place = second.place, shape.layer = second.layer, shape.entity = second.entity;
-      const bool apart = unless_faulty(shape, [&] {
+      const bool whole = shared > kSame * smaller && first.layer == second.layer;
+      const bool apart = unless_faulty(shape_of(second), [&] {
         refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
-                                   "move them apart, or leave a layer out",
-                                   100 * shared / smaller, shown_place(first.place, first.layer)));
+                                   "move them apart, or leave a layer out{}",
+                                   100 * shared / smaller, shown_place(first.place, first.layer),
+                                   whole ? "; say \"holes\": \"nested\" if the inner one is a hole"
+                                         : ""));
       });
       if (apart || !covered_.insert(pair.second).second) continue;
-      if (--report_.read[second.entity] == 0) report_.read.erase(second.entity);
+      uncount(second.entity);
     }
   }
 
@@ -286,7 +368,7 @@ class OutlineMaker {
   std::vector<DrawnShape> shapes_;  // in m
   double tolerance_ = 0;
   std::vector<Outline> outlines_;
-  std::vector<Polygon> polygons_;        // the outer rings of the outlines
+  std::vector<Polygon> polygons_;        // of the outlines
   std::int32_t first_face_ = INT32_MAX;  // of the outlines that are faces between lines
   std::vector<size_t> labels_;           // numbers of shapes
   std::set<std::int32_t> hatches_;       // outlines that are the hatching of another one

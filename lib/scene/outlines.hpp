@@ -1,7 +1,6 @@
 // Outlines of bodies, from the shapes of a drawing.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -29,8 +28,9 @@ struct OutlineRules {
   std::set<std::string> ignored;  ///< layers that are left out
   bool repair = false;            ///< repair outlines, see repair(); simplify by a given tolerance
   bool skip_faults = false;       ///< leave out what is faulty, and count it
-  /// Whether the bodies of a layer may have holes.
-  std::function<bool(const std::string& layer)> may_have_holes;
+  /// An outline directly inside of another one of its layer is a hole of it; one inside of that is
+  /// an outline again.
+  bool nested_holes = false;
 };
 
 struct Outline {
@@ -44,7 +44,7 @@ struct Outline {
 /// if its ends meet; with `polygonize` the faces between lines are outlines, and a label inside of
 /// a face gives it its layer and name. A hatch over an outline is left out, and so is what the
 /// drawing does not show. `report` counts what is read and left out. Throws BadOutline for open
-/// lines, holes, rings that are no simple polygons, outlines that cover each other, entities that
+/// lines, rings that are no polygons, outlines that cover each other, entities that
 /// cannot be read, and drawings without any outline. With `repair` rings become simple polygons, of
 /// which an outline may give several, and with `skip_faults` only a drawing without any outline is
 /// refused; `report` lists the faults.

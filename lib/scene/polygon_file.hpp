@@ -1,5 +1,5 @@
-// Reads polygons that stand in files of their own, as [[x,y],...], {"polygon": [[x,y],...]},
-// GeoJSON or WKT.
+// Reads polygons that stand in files of their own, as [[x,y],...], {"polygon": [[x,y],...],
+// "holes": [[[x,y],...],...]}, GeoJSON or WKT.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace apothem {
 
-/// The ring as it stands in the file. Whether it is a simple polygon is not checked yet. Throws
+/// The rings as they stand in the file. Whether they are a polygon is not checked yet. Throws
 /// SceneError, and PolygonError where a vertex is wrong.
-RingText read_polygon_file(const std::string& file);
+PolygonText read_polygon_file(const std::string& file);
 
 /// The polygon of a file. Throws as read_polygon_file(), and PolygonError, at the line of the
-/// vertex, if the ring is not a simple polygon.
+/// vertex, if the rings are not a polygon.
 Polygon polygon_of_file(const std::string& file);
 
 }  // namespace apothem

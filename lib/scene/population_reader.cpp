@@ -93,7 +93,8 @@ void read_regions(const JsonReader& in, const JsonValue& value, Model& model) {
               "hold , \" [ ]");
     }
     JsonObject object(in, item);
-    const Polygon polygon = read_polygon(in, object.required("polygon", "[[x,y],...] in m"));
+    const JsonValue& outline = object.required("polygon", "[[x,y],...] in m");
+    const Polygon polygon = read_polygon(in, outline, object.optional("holes"));
     object.finish();
     Region region{name, {}, area_moments(polygon).area};
     for (const std::vector<int>& part : convex_parts(polygon)) {

@@ -1,4 +1,4 @@
-// A ring of vertices as it stands in a text, before it is known to be a polygon.
+// Rings of vertices as they stand in a text, before they are known to be a polygon.
 #pragma once
 
 #include <vector>
@@ -10,6 +10,12 @@ namespace apothem {
 struct RingText {
   std::vector<Vec2> ring;  ///< world coordinates, m; without a closing vertex
   std::vector<int> lines;  ///< of each vertex in the file, counted from 1
+};
+
+/// The outer ring of a polygon, and its holes.
+struct PolygonText {
+  RingText outer;
+  std::vector<RingText> holes;
 };
 
 /// Whether the first vertex is repeated at the end is a habit of formats: WKT and GeoJSON ask for

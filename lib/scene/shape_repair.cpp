@@ -27,8 +27,10 @@ std::vector<DrawnShape> read_shapes(const std::string& file) {
   if (!is_drawing(file)) {
     DrawnShape shape{};
     shape.kind = DrawnShape::Kind::area;
-    shape.rings.push_back(read_polygon_file(file).ring);
-    shape.place = "the ring";
+    const PolygonText text = read_polygon_file(file);
+    shape.rings.push_back(text.outer.ring);
+    for (const RingText& hole : text.holes) shape.rings.push_back(hole.ring);
+    shape.place = text.holes.empty() ? "the ring" : "the polygon";
     shape.entity = "polygon";
     return {shape};
   }

@@ -10,7 +10,7 @@
 namespace apothem {
 
 /// The shapes of a file, in m as far as a DXF file states its unit: of a drawing, see
-/// read_drawing(), or the ring of a file as read_polygon_file() reads it. Throws SceneError.
+/// read_drawing(), or the rings of a file as read_polygon_file() reads it. Throws SceneError.
 std::vector<DrawnShape> read_shapes(const std::string& file);
 
 /// Where a shape stands in its drawing: "feature 3 on layer \"stones\"".

@@ -41,6 +41,11 @@ class ValueMaker {
     for (const Vec2& p : points) add(value, vec2(p));
     return value;
   }
+  [[nodiscard]] JsonValue rings(const std::vector<std::vector<Vec2>>& rings) const {
+    JsonValue value = make(JsonValue::Type::array);
+    for (const std::vector<Vec2>& points : rings) add(value, ring(points));
+    return value;
+  }
   [[nodiscard]] JsonValue object() const { return make(JsonValue::Type::object); }
   static void add(JsonValue& array, JsonValue value) { array.add_from_elsewhere(std::move(value)); }
   static void add(JsonValue& object, const char* key, JsonValue value) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "lib/scene/json.hpp"
@@ -56,7 +57,7 @@ class Reader {
  public:
   Reader(std::string_view text, const std::string& file) : in_(text), file_(file) {}
 
-  RingText read() {
+  PolygonText read() {
     skip_coordinate_system();
     const bool several = read_shape() == "MULTIPOLYGON";
     read_dimension();
@@ -64,25 +65,25 @@ class Reader {
       expect('(', "(((x y, ...)))");
       int polygons = 0;
       do {
-        RingText ring = polygon();
-        if (polygons++ == 0) ring_ = std::move(ring);
+        PolygonText next = polygon();
+        if (polygons++ == 0) polygon_ = std::move(next);
       } while (in_.take(','));
       expect(')', "a , or the ) that ends the MULTIPOLYGON");
       if (polygons > 1) fail(fmt::format("holds {} polygons; {}", polygons, kOnePolygon));
     } else {
-      ring_ = polygon();
+      polygon_ = polygon();
     }
     if (in_.now() == ";") in_.next();
     if (in_.is_word() && upper_case(in_.now()).find("POLYGON") != std::string::npos) {
       fail(std::string("holds more than one polygon; ") + kOnePolygon);
     }
     if (!in_.now().empty()) fail(fmt::format("text behind the polygon: \"{}\"", in_.now()));
-    return std::move(ring_);
+    return std::move(polygon_);
   }
 
  private:
   [[noreturn]] void fail(const std::string& what, int vertex = -1) const {
-    throw PolygonError(file_, in_.line(), what, vertex);
+    throw PolygonError(file_, in_.line(), what, vertex, hole_);
   }
   [[nodiscard]] std::string found() const {
     return in_.now().empty() ? "the text ends" : fmt::format("here stands \"{}\"", in_.now());
@@ -135,30 +136,48 @@ class Reader {
     fail("has Z or M coordinates, and bodies are two-dimensional: write POLYGON ((x y, x y, ...))");
   }
 
-  RingText polygon() {
+  PolygonText polygon() {
     if (upper_case(in_.now()) == "EMPTY")
       fail("the polygon is EMPTY; give it three vertices or more");
     expect('(', "(( in front of the first vertex");
     expect('(', "(( in front of the first vertex");
+    PolygonText result;
+    result.outer = ring();
+    while (in_.take(',')) {
+      hole_ = static_cast<int>(result.holes.size());
+      expect('(', "the ( in front of the first vertex of a hole");
+      result.holes.push_back(ring());
+    }
+    hole_.reset();
+    expect(')', "the second ) behind the last vertex");
+    return result;
+  }
+
+  // The vertices behind a (, and the ) behind them.
+  RingText ring() {
     RingText result;
     do {
       vertex(result);
     } while (in_.take(','));
     if (!in_.take(')')) {
       const int n = static_cast<int>(result.ring.size());
-      fail(fmt::format("{} behind vertex {} where it needs a , or a )", found(), n - 1), n - 1);
+      fail(fmt::format("{} behind {}vertex {} where it needs a , or a )", found(), ring_name(),
+                       n - 1),
+           n - 1);
     }
     leave_out_closing_vertex(result.ring);
-    if (in_.now() == ",") fail("the polygon has a hole; give a simple polygon");
-    expect(')', "the second ) behind the last vertex");
     return result;
+  }
+
+  [[nodiscard]] std::string ring_name() const {
+    return hole_ ? fmt::format("hole {}, ", *hole_) : "";
   }
 
   void vertex(RingText& to) {
     const int i = static_cast<int>(to.ring.size());
     const int line = in_.line();
     const auto refuse = [&](const std::string& what) {
-      throw PolygonError(file_, line, fmt::format("vertex {}{}", i, what), i);
+      throw PolygonError(file_, line, fmt::format("{}vertex {}{}", ring_name(), i, what), i, hole_);
     };
     std::vector<double> numbers;
     for (; in_.is_word(); in_.next()) {
@@ -188,12 +207,13 @@ class Reader {
 
   Pieces in_;
   const std::string& file_;
-  RingText ring_;
+  PolygonText polygon_;
+  std::optional<int> hole_;  // that is being read; none in the outer ring
 };
 
 }  // namespace
 
-RingText parse_wkt(std::string_view text, const std::string& file) {
+PolygonText parse_wkt(std::string_view text, const std::string& file) {
   return Reader(text, file).read();
 }
 

@@ -9,10 +9,11 @@
 
 namespace apothem {
 
-/// The ring of a POLYGON, or of a MULTIPOLYGON that holds one polygon. White space may stand
-/// between any two words, and upper and lower case mean the same. A coordinate system in front
-/// ("SRID=4326;") is not used. Throws PolygonError, at the vertex where there is one, for anything
-/// else: holes, further polygons, empty ones, Z and M coordinates, numbers that are none.
-RingText parse_wkt(std::string_view text, const std::string& file);
+/// The rings of a POLYGON, or of a MULTIPOLYGON that holds one polygon: the outer one and holes.
+/// White space may stand between any two words, and upper and lower case mean the same. A
+/// coordinate system in front ("SRID=4326;") is not used. Throws PolygonError, at the vertex where
+/// there is one, for anything else: further polygons, empty ones, Z and M coordinates, numbers that
+/// are none.
+PolygonText parse_wkt(std::string_view text, const std::string& file);
 
 }  // namespace apothem

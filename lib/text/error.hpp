@@ -2,6 +2,7 @@
 // and what would be right.
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -41,16 +42,20 @@ class SceneError : public std::runtime_error {
   int line_;
 };
 
-/// The error for a ring of vertices that is no polygon. It also knows the vertex.
+/// The error for rings of vertices that are no polygon. It also knows the vertex, and the hole.
 class PolygonError : public SceneError {
  public:
-  /// `vertex`: counted from 0, or -1 if no vertex is meant.
-  PolygonError(const std::string& file, int line, const std::string& what, int vertex)
-      : SceneError(file, line, "", what), vertex_(vertex) {}
+  /// `vertex`: counted from 0 in its ring, or -1 if no vertex is meant. `hole`: the number of that
+  /// ring among the holes, or nothing if it is the outer one.
+  PolygonError(const std::string& file, int line, const std::string& what, int vertex,
+               std::optional<int> hole = {})
+      : SceneError(file, line, "", what), vertex_(vertex), hole_(hole) {}
   [[nodiscard]] int vertex() const { return vertex_; }
+  [[nodiscard]] std::optional<int> hole() const { return hole_; }
 
  private:
   int vertex_;
+  std::optional<int> hole_;
 };
 
 }  // namespace apothem

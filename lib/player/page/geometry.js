@@ -1,5 +1,12 @@
 // The shapes of the bodies, and their places in a frame. Lengths are m from the middle of the run.
 
+// The first corner of each ring of a body, and the end of each: the outer ring and then the holes.
+function ringsOf(array, body) {
+  const starts = [array.ring_first[body]];
+  for (let i = array.body_holes[body]; i < array.body_holes[body + 1]; ++i) starts.push(array.hole_first[i]);
+  return starts.map((first, k) => [first, k + 1 < starts.length ? starts[k + 1] : array.ring_first[body + 1]]);
+}
+
 // What is drawn: corners of triangles with their owners, and edges.
 function geometryOf(run) {
   const {array} = run, bodies = run.bodies.length;
@@ -7,12 +14,13 @@ function geometryOf(run) {
   const edgeCount = array.ring_x.length;
   const rigidEdges = {ends: new Float32Array(4 * edgeCount), bodies: new Float32Array(edgeCount)};
   for (let b = 0; b < bodies; ++b) {
-    const first = array.ring_first[b], end = array.ring_first[b + 1];
-    for (let i = first; i < end; ++i) {
-      const next = i + 1 < end ? i + 1 : first;
-      bodyOfCorner[i] = b;
-      rigidEdges.bodies[i] = b;
-      rigidEdges.ends.set([array.ring_x[i], array.ring_y[i], array.ring_x[next], array.ring_y[next]], 4 * i);
+    for (const [first, end] of ringsOf(array, b)) {
+      for (let i = first; i < end; ++i) {
+        const next = i + 1 < end ? i + 1 : first;
+        bodyOfCorner[i] = b;
+        rigidEdges.bodies[i] = b;
+        rigidEdges.ends.set([array.ring_x[i], array.ring_y[i], array.ring_x[next], array.ring_y[next]], 4 * i);
+      }
     }
   }
   const solid = (triangles, corner, owner) => {
@@ -96,14 +104,17 @@ class Places {
 
   // Lines around a body.
   outline(frame, body) {
-    const {array} = this.run, first = array.ring_first[body], end = array.ring_first[body + 1];
-    if (first < end) {
-      const [x, y, angle] = this.pose(frame, body), c = Math.cos(angle), s = Math.sin(angle), ring = [];
-      for (let i = first; i <= end; ++i) {
-        const lx = array.ring_x[i < end ? i : first], ly = array.ring_y[i < end ? i : first];
-        ring.push([x + c * lx - s * ly, y + s * lx + c * ly]);
-      }
-      return [ring];
+    const {array} = this.run;
+    if (array.ring_first[body] < array.ring_first[body + 1]) {
+      const [x, y, angle] = this.pose(frame, body), c = Math.cos(angle), s = Math.sin(angle);
+      return ringsOf(array, body).map(([first, end]) => {
+        const ring = [];
+        for (let i = first; i <= end; ++i) {
+          const lx = array.ring_x[i < end ? i : first], ly = array.ring_y[i < end ? i : first];
+          ring.push([x + c * lx - s * ly, y + s * lx + c * ly]);
+        }
+        return ring;
+      });
     }
     const lines = [];
     array.boundary_body.forEach((owner, i) => {
@@ -125,13 +136,16 @@ class Places {
       if (isInside(ring, x, y)) return {body, element: e};
     }
     for (let body = bodies.length - 1; body >= 0; --body) {
-      const first = array.ring_first[body], end = array.ring_first[body + 1];
-      if (first === end || !this.isThere(frame, body)) continue;
+      if (array.ring_first[body] === array.ring_first[body + 1] || !this.isThere(frame, body)) continue;
       const [cx, cy, angle] = this.pose(frame, body);
-      const c = Math.cos(angle), s = Math.sin(angle), ring = [];
+      const c = Math.cos(angle), s = Math.sin(angle);
       const lx = c * (x - cx) + s * (y - cy), ly = c * (y - cy) - s * (x - cx);
-      for (let i = first; i < end; ++i) ring.push([array.ring_x[i], array.ring_y[i]]);
-      if (isInside(ring, lx, ly)) return {body, element: -1};
+      const around = ringsOf(array, body).filter(([first, end]) => {
+        const ring = [];
+        for (let i = first; i < end; ++i) ring.push([array.ring_x[i], array.ring_y[i]]);
+        return isInside(ring, lx, ly);
+      });
+      if (around.length % 2 === 1) return {body, element: -1};  // not in a hole
     }
     return null;
   }
