@@ -15,7 +15,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/elementary.hpp"
@@ -74,7 +73,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
     const std::vector<Vec2>& vertices = body.potential.vertices;
     for (size_t i = 0; i < vertices.size(); ++i) {
       radius = std::max(radius, vertices[i].norm());
-      longest = std::max(longest, (after(vertices, i) - vertices[i]).norm());
+      longest = std::max(longest, (vertices[body.next(i)] - vertices[i]).norm());
       scene.include(body.position + vertices[i]);
     }
     radius_.push_back(radius);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/mesh/measure.hpp"
 #include "lib/model/inradius.hpp"
@@ -89,8 +88,8 @@ class Blocks {
     std::vector<Vec2> points;
     for (size_t i = 0; i < v.size(); ++i) {
       radius = std::max(radius, v[i].norm());
-      const Vec2 next = after(v, i) - v[i];
-      const Vec2 last = before(v, i) - v[i];
+      const Vec2 next = v[body.next(i)] - v[i];
+      const Vec2 last = v[body.previous(i)] - v[i];
       b.breadth = std::max(b.breadth, next.norm());
       const double sine = cross(next, last), whole = next.norm() * last.norm();
       if (sine > 0) b.tangent = std::min(b.tangent, sine / (whole + next.dot(last)));

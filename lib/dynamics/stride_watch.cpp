@@ -222,7 +222,8 @@ std::optional<StrideWatch::Fault> StrideWatch::look(const State& state, const Su
 
 StrideWatch::Middle StrideWatch::middle_of(BodyIndex body) const {
   if (is_rigid(body)) {
-    const Polygon polygon(model_.bodies[static_cast<size_t>(body)].potential.vertices);
+    const Rings rings = model_.bodies[static_cast<size_t>(body)].rings();
+    const Polygon polygon(rings[0], {rings.begin() + 1, rings.end()});
     return {polygon.origin() + largest_inscribed_circle(polygon).centres.front(), {}};
   }
   const DeformableBody& mesh_body = model_.deformables[static_cast<size_t>(body - rigid_count_)];
