@@ -281,8 +281,7 @@ Polygon(points, holes=[])
 
 Raises SceneError, with the numbers of the vertex and of the hole, if a ring crosses or touches itself
 or another one, or has no area.)");
-  polygon
-      .def(py::init(&polygon_of), py::arg("points"), py::arg("holes") = py::list())
+  polygon.def(py::init(&polygon_of), py::arg("points"), py::arg("holes") = py::list())
       .def_property_readonly(
           "points",
           [](const Polygon& p) {
@@ -320,10 +319,10 @@ or another one, or has no area.)");
       .def("offset", &offset_of, py::arg("d"),
            "The polygon with its sides moved inwards by d, m, along its straight skeleton: a list "
            "of polygons, which may be empty. Raises ValueError unless d > 0.")
-      .def(
-          "contains", &contains, py::arg("points"),
-          "Whether points (k, 2) lie inside, neither on the boundary nor in a hole, decided exactly: "
-          "array (k) of bool.")
+      .def("contains", &contains, py::arg("points"),
+           "Whether points (k, 2) lie inside, neither on the boundary nor in a hole, decided "
+           "exactly: "
+           "array (k) of bool.")
       .def("__len__", &Polygon::size);
   bind_values(polygon);
 }

@@ -36,9 +36,8 @@ void raise_scene_error(const SceneError& error) {
 
 void raise_bad_polygon(const std::string& what, int vertex, int hole) {
   const py::object type = py::module_::import("apothem._errors").attr("SceneError");
-  raise("SceneError",
-        type(what, what, py::none(), py::none(), py::none(), number_or_none(vertex, 0),
-             number_or_none(hole, 0)));
+  raise("SceneError", type(what, what, py::none(), py::none(), py::none(),
+                           number_or_none(vertex, 0), number_or_none(hole, 0)));
 }
 
 void translate(std::exception_ptr exception) {

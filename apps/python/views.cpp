@@ -193,9 +193,10 @@ body that the scene will ever have; `present` says which of them are in the worl
       .def("outlines", &outlines,
            "List of n new arrays (k, 2): the vertices where they are now, relative to "
            "Simulation.origin, m, counter-clockwise, without those of holes.")
-      .def("holes", &holes,
-           "List of n lists of new arrays (k, 2): the vertices of the holes of each body where they "
-           "are now, relative to Simulation.origin, m, clockwise.")
+      .def(
+          "holes", &holes,
+          "List of n lists of new arrays (k, 2): the vertices of the holes of each body where they "
+          "are now, relative to Simulation.origin, m, clockwise.")
       .def("__len__", [](const Bodies& b) { return model_of(b.run).bodies.size(); });
 
   py::class_<Nodes>(module, "Nodes",

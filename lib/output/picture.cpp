@@ -202,8 +202,9 @@ std::vector<std::string> title(const PotentialPicture& picture, const View& view
   std::vector<std::string> lines{
       fmt::format("Distance potential φ, r = {:.6g} m ({})", picture.reference,
                   picture.reference_name),
-      fmt::format("{} vertices{}, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(), holes_in_words(picture.polygon),
-                  picture.circle.radius, picture.skeleton.roof_height)};
+      fmt::format("{} vertices{}, inradius {:.6g} m, roof height {:.6g} m", picture.polygon.size(),
+                  holes_in_words(picture.polygon), picture.circle.radius,
+                  picture.skeleton.roof_height)};
   if (view.stretched) {
     const double x = (layout.frame.x1 - layout.frame.x0) / (layout.window.x1 - layout.window.x0);
     const double y = (layout.frame.y1 - layout.frame.y0) / (layout.window.y1 - layout.window.y0);

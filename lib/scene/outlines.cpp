@@ -338,11 +338,11 @@ class OutlineMaker {
       if (rules_.skip_faults && covered_.count(pair.first)) continue;
       const bool whole = shared > kSame * smaller && first.layer == second.layer;
       const bool apart = unless_faulty(shape_of(second), [&] {
-        refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
-                                   "move them apart, or leave a layer out{}",
-                                   100 * shared / smaller, shown_place(first.place, first.layer),
-                                   whole ? "; say \"holes\": \"nested\" if the inner one is a hole"
-                                         : ""));
+        refuse(second,
+               fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
+                           "move them apart, or leave a layer out{}",
+                           100 * shared / smaller, shown_place(first.place, first.layer),
+                           whole ? "; say \"holes\": \"nested\" if the inner one is a hole" : ""));
       });
       if (apart || !covered_.insert(pair.second).second) continue;
       uncount(second.entity);
