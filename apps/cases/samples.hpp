@@ -51,6 +51,9 @@ Polygon random_quad(Random& random);
 Polygon random_convex(Random& random, int n);
 /// Star-shaped about the origin: n radii from `inner` to 1 at random angles.
 Polygon random_star_shaped(Random& random, int n, double inner);
+/// A star-shaped polygon about the origin with random holes, star-shaped and regular ones. There
+/// are fewer than `holes` where no more have been found to fit, but at least one.
+Polygon random_holed(Random& random, int holes);
 
 /// A hexagon whose edges are divided and bent at their middles again and again, like a coastline,
 /// until there are n vertices.
@@ -62,9 +65,11 @@ Polygon skyline(Random& random, int n);
 /// simple.
 template <class Map>
 Polygon mapped(const Polygon& polygon, const Map& map) {
-  std::vector<Vec2> ring = polygon.vertices();
-  for (Vec2& v : ring) v = map(v);
-  return Polygon(ring);
+  Rings rings = rings_of(polygon);
+  for (std::vector<Vec2>& ring : rings) {
+    for (Vec2& v : ring) v = map(v);
+  }
+  return Polygon(rings.front(), {rings.begin() + 1, rings.end()});
 }
 /// Moved by a vector.
 Polygon shifted(const Polygon& polygon, const Vec2& by);

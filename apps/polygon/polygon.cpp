@@ -84,7 +84,7 @@ Json singular_json(const Polygon& polygon, const SingularArea& singular) {
     points.insert(points.end(), segments.back().begin(), segments.back().end());
   }
   Json polygons = Json::array();
-  for (const std::vector<Vec2>& ring : singular.polygons) {
+  for (const std::vector<Vec2>& ring : rings_of(singular.polygons)) {
     polygons.push_back(world_list(polygon, ring));
   }
   return {{"kind", kind_name(singular.kind())},

@@ -13,7 +13,6 @@
 #include "geometry/regions/boolean.hpp"
 #include "geometry/regions/repair.hpp"
 #include "geometry/skeleton/singular_area.hpp"
-#include "lib/output/polygon_shapes.hpp"
 
 namespace apothem::python {
 namespace {
@@ -85,7 +84,7 @@ py::object singular_area_of(const Polygon& polygon, std::optional<double> depth)
   }
   return result("SingularArea", kind_name(area.kind()), area.area(),
                 array_of(area.points, polygon.origin()), segments,
-                rings_of(area.polygons, polygon.origin()));
+                rings_of(apothem::rings_of(area.polygons), polygon.origin()));
 }
 
 py::object skeleton_object(const Polygon& polygon) {
@@ -105,12 +104,12 @@ py::object skeleton_object(const Polygon& polygon) {
 py::list offset_of(const Polygon& polygon, double depth) {
   const SingularArea area = singular_area(skeleton_of(polygon), depth);
   py::list polygons;
-  for (PolygonWithHoles& part : polygons_of(area.polygons)) {
-    for (Vec2& v : part.outer) v += polygon.origin();
-    for (std::vector<Vec2>& hole : part.holes) {
-      for (Vec2& v : hole) v += polygon.origin();
+  for (const PolygonWithHoles& part : area.polygons) {
+    Rings rings = apothem::rings_of(part);
+    for (std::vector<Vec2>& ring : rings) {
+      for (Vec2& v : ring) v += polygon.origin();
     }
-    polygons.append(Polygon(part));
+    polygons.append(Polygon(rings.front(), {rings.begin() + 1, rings.end()}));
   }
   return polygons;
 }

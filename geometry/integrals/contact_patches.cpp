@@ -57,10 +57,11 @@ class Splitter {
     work_.sets.reset(segments_.size());
     std::fill_n(work_.joined.begin(), 2 * size(), char{0});
     loose_ = 2 * size();
-    join_at_vertices(0, of_a_, a_.size);
-    join_at_vertices(of_a_, size(), b_.size);
+    join_at_vertices(0, of_a_, a_);
+    join_at_vertices(of_a_, size(), b_);
     join_at_crossings();
     if (loose_ > 0) join_loose_ends();
+    if (a_.links || b_.links) join_holes();
   }
 
   /// Numbers the patches in the order of their first segment and returns their number.
@@ -123,16 +124,61 @@ class Splitter {
   }
 
   // Joins segments that follow each other at a vertex. The segments first to last - 1 belong to one
-  // polygon and are in the order of its edges, whose number is `edges`.
-  void join_at_vertices(int first, int last, int edges) {
+  // polygon and are in the order of its edges.
+  void join_at_vertices(int first, int last, const PlacedPotential& polygon) {
     for (int r = first; r < last; ++r) {
-      const int next = r + 1 < last ? r + 1 : first;
-      const int edge = segments_[r].edge + 1 < edges ? segments_[r].edge + 1 : 0;
+      const int edge = polygon.next(segments_[r].edge);
+      const int next =
+          edge > segments_[r].edge ? (r + 1 < last ? r + 1 : first) : first_on(edge, first, r);
       const int end = 2 * r + 1, start = 2 * next;
       if (segments_[next].edge == edge && work_.crossed[end] < 0 && work_.crossed[start] < 0) {
         join(end, start);
       }
     }
+  }
+
+  // The first one of the segments from `first` to `last` that lies on an edge or behind it.
+  [[nodiscard]] int first_on(int edge, int first, int last) const {
+    const auto begin = segments_.begin();
+    const auto found = std::lower_bound(begin + first, begin + last, edge,
+                                        [](const BoundarySegment& s, int e) { return s.edge < e; });
+    return static_cast<int>(found - begin);
+  }
+
+  // Joins the boundaries of holes in the overlap, which turn clockwise, to the boundary around
+  // them: the smallest one that encloses a point of theirs.
+  void join_holes() {
+    std::vector<double> twice_area(static_cast<size_t>(size()), 0);
+    bool any = false;
+    for (int r = 0; r < size(); ++r) {
+      twice_area[work_.sets.find(r)] += cross(segments_[r].start, segments_[r].end);
+    }
+    for (const double area : twice_area) any = any || area < 0;
+    if (!any) return;
+    std::vector<int> roots;
+    for (int r = 0; r < size(); ++r) roots.push_back(work_.sets.find(r));
+    for (int hole = 0; hole < size(); ++hole) {
+      if (!(twice_area[hole] < 0)) continue;
+      int around = -1;
+      for (int outer = 0; outer < size(); ++outer) {
+        if (!(twice_area[outer] > 0) || !encloses(roots, outer, segments_[hole].start)) continue;
+        if (around < 0 || twice_area[outer] < twice_area[around]) around = outer;
+      }
+      if (around < 0) continue;
+      const auto [first, second] = std::minmax({work_.sets.find(hole), work_.sets.find(around)});
+      work_.sets.join(second, first);
+    }
+  }
+
+  // Whether the boundary of the segments with a root goes round a point.
+  [[nodiscard]] bool encloses(const std::vector<int>& roots, int root, const Vec2& point) const {
+    bool inside = false;
+    for (int r = 0; r < size(); ++r) {
+      if (roots[r] != root) continue;
+      const Vec2 p = segments_[r].start - point, q = segments_[r].end - point;
+      if ((p.y() > 0) != (q.y() > 0) && (cross(p, q) > 0) == (q.y() > p.y())) inside = !inside;
+    }
+    return inside;
   }
 
   // Joins segments where edge i of a crosses edge j of b. They are found by (i, j) and not by
@@ -219,7 +265,8 @@ class Splitter {
     };
     int edge = from.edge;
     do {
-      if (++edge == x.size) edge = 0;
+      edge = x.next(edge);
+      if (edge == from.edge && edge != to.edge) return most;  // they lie on different rings
       go_to(Vec2(x.x[edge], x.y[edge]) - shift_x);
       if (!(worst < most)) return most;
     } while (edge != to.edge);
@@ -239,7 +286,8 @@ class Splitter {
     NearestPoint place{0, 0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i < p.size; ++i) {
       const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
-      const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
+      const int end = p.end(i);
+      const Vec2 edge(p.x[end] - p.x[i], p.y[end] - p.y[i]);
       const auto [fraction, distance2] = nearest_on_segment(from, edge);
       if (distance2 < place.distance2) place = {i, fraction, distance2};
     }

@@ -122,10 +122,9 @@ double depth_ratio(const Potential& potential) {
   // the boundary than the hypotenuse of h and of the distance o by which its foot misses the edge.
   // o/h is largest at a corner of the face.
   const int n = potential.size();
-  const RingLinks* const links = potential.links ? &*potential.links : nullptr;
   for (int e = 0; e < n; ++e) {
     const Vec2& from = potential.vertices[e];
-    const Vec2 along = potential.vertices[next(links, e, n)] - from;
+    const Vec2 along = potential.vertices[potential.next(e)] - from;
     const double length = along.norm();
     for (const int node : potential.roof->faces[e]) {
       if (node < n) continue;  // on the boundary

@@ -38,7 +38,7 @@ int PlacedShapes::add(const Potential& potential) {
       .roof = potential.roof ? &*potential.roof : nullptr,
       .distance = potential.distance ? &*potential.distance : nullptr,
       .layer = layered ? &*potential.layer : nullptr,
-      .links = potential.links ? &*potential.links : nullptr,
+      .links = potential.ring_links(),
       .capped = potential.capped(),
       .depth_ratio = apothem::depth_ratio(potential),
       .top_radius = potential.top_points.front().norm(),

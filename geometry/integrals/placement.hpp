@@ -40,7 +40,7 @@ struct Placement {
             .radius = radius,
             .steepest = potential.steepest,
             .layer = potential.layer ? &*potential.layer : nullptr,
-            .links = potential.links ? &*potential.links : nullptr,
+            .links = potential.ring_links(),
             .shift = polygon.origin() - origin};
   }
   Placement(const Placement&) = delete;

@@ -18,7 +18,7 @@ std::vector<std::vector<Vec2>> voronoi_blocks(const Polygon& region, const Voron
       if (inner.polygons.size() != 1) {
         throw std::invalid_argument("a cell is too small for the gap, or falls into parts");
       }
-      ring = std::move(inner.polygons.front());
+      ring = std::move(inner.polygons.front().outer);
       for (Vec2& v : ring) v += polygon.origin();
     }
     blocks.push_back(std::move(ring));

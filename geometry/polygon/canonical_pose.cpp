@@ -15,16 +15,23 @@ bool precedes(const Vec2& p, const Vec2& q) {
   return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
 }
 
-std::vector<Vec2> image(const Polygon& polygon, const AxisMap& map) {
-  std::vector<Vec2> ring;
-  for (const Vec2& v : polygon.vertices()) ring.push_back(map(v));
-  if (map.mirrors()) std::reverse(ring.begin(), ring.end());
-  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), precedes), ring.end());
-  return ring;
+bool ring_precedes(const std::vector<Vec2>& p, const std::vector<Vec2>& q) {
+  return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), precedes);
+}
+
+Rings image(const Polygon& polygon, const AxisMap& map) {
+  Rings rings = rings_of(polygon);
+  for (std::vector<Vec2>& ring : rings) {
+    for (Vec2& v : ring) v = map(v);
+    if (map.mirrors()) std::reverse(ring.begin(), ring.end());
+    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), precedes), ring.end());
+  }
+  std::sort(rings.begin() + 1, rings.end(), ring_precedes);
+  return rings;
 }
 
 struct Images {
-  std::vector<Vec2> first;
+  Rings first;
   std::vector<AxisMap> maps;  // that lead to it
 };
 
@@ -34,14 +41,14 @@ Images first_image(const Polygon& polygon) {
     for (const double x : {1., -1.}) {
       for (const double y : {1., -1.}) {
         const AxisMap map{exchanged, x, y};
-        std::vector<Vec2> ring = image(polygon, map);
+        Rings rings = image(polygon, map);
         const bool none = result.maps.empty();
-        if (!none && ring == result.first) {
+        if (!none && rings == result.first) {
           result.maps.push_back(map);
         } else if (none ||
-                   std::lexicographical_compare(ring.begin(), ring.end(), result.first.begin(),
-                                                result.first.end(), precedes)) {
-          result = {std::move(ring), {map}};
+                   std::lexicographical_compare(rings.begin(), rings.end(), result.first.begin(),
+                                                result.first.end(), ring_precedes)) {
+          result = {std::move(rings), {map}};
         }
       }
     }
@@ -73,7 +80,7 @@ CanonicalPose::CanonicalPose(const Polygon& polygon)
         for (const AxisMap* image : steps) {
           if (image) symmetries_.push_back(composed(*image, map_));
         }
-        return Polygon(std::move(images.first));
+        return Polygon(images.first.front(), {images.first.begin() + 1, images.first.end()});
       }()),
       shift_(map_.undo(polygon_.origin()) - polygon.origin()) {}
 

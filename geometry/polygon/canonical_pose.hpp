@@ -1,4 +1,5 @@
-// A pose of a polygon that does not depend on where its ring starts, on its sense, on mirrors that
+// A pose of a polygon that does not depend on where its rings start, on their senses, on the order
+// of its holes, on mirrors that
 // exchange the senses of the axes or the axes themselves, and on quarter turns. What is computed
 // in this pose and mapped back does not depend on them either, to the last bit.
 #pragma once
@@ -27,8 +28,8 @@ class CanonicalPose {
  public:
   explicit CanonicalPose(const Polygon& polygon);
 
-  /// The polygon in this pose: of its eight images, each from its leftmost and lowest vertex on,
-  /// the one that comes first in the order of coordinates.
+  /// The polygon in this pose: of its eight images, each ring from its leftmost and lowest vertex
+  /// on, the one that comes first in the order of coordinates, as do its holes.
   [[nodiscard]] const Polygon& polygon() const { return polygon_; }
 
   /// Points that have been computed in this pose, relative to the origin of the polygon there, in

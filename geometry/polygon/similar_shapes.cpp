@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
@@ -34,9 +35,16 @@ SimilarShapes::Shape SimilarShapes::shape_of(const Polygon& polygon) {
   const Box box = bounding_box(polygon);
   double largest = 0;
   for (const double x : {box.x0, box.y0, box.x1, box.y1}) largest = std::max(largest, std::abs(x));
-  Shape shape{-1,           polygon.local_vertices(), Vec2::Zero(), 0, 0,
-              box.extent(), kUlps * 0x1p-52 * largest};
-  const double n = polygon.size();
+  Shape shape{-1,           polygon.local_vertices(),  Vec2::Zero(), 0, 0,
+              box.extent(), kUlps * 0x1p-52 * largest, {},           {}};
+  const int outer = polygon.ring_start(1);
+  for (int i = outer; i < polygon.size(); ++i) {
+    shape.hole_arms.push_back(shape.arms[i]);
+    shape.hole_next.push_back(polygon.next(i) - outer);
+    shape.perimeter += (shape.arms[i] - shape.arms[polygon.next(i)]).norm();
+  }
+  shape.arms.resize(static_cast<size_t>(outer));
+  const double n = outer;
   for (const Vec2& v : shape.arms) shape.mean += v / n;
   double squares = 0;
   for (size_t i = 0; i < shape.arms.size(); ++i) {
@@ -46,6 +54,7 @@ SimilarShapes::Shape SimilarShapes::shape_of(const Polygon& polygon) {
     v -= shape.mean;
     squares += v.squaredNorm();
   }
+  for (Vec2& v : shape.hole_arms) v -= shape.mean;
   shape.size = std::sqrt(squares);
   return shape;
 }
@@ -71,15 +80,51 @@ std::optional<Similarity> SimilarShapes::aligned(const Shape& from, const Shape&
     const Vec2 image(turn.x() * p.x() - turn.y() * p.y(), turn.y() * p.x() + turn.x() * p.y());
     if (!((image - to.arms[k]).norm() <= tolerance)) return std::nullopt;
   }
-  Similarity map{n, first, mirrored, turn, Vec2::Zero()};
+  const int vertices = n + static_cast<int>(from.hole_arms.size());
+  Similarity map{vertices, n, first, mirrored, turn, Vec2::Zero()};
+  if (!from.hole_arms.empty() && !align_holes(from, to, tolerance, map)) return std::nullopt;
   map.shift = to.mean - map(from.mean);
   return map;
+}
+
+// Finds the images of the vertices of holes among those of the copy, and of the edges between them.
+bool SimilarShapes::align_holes(const Shape& from, const Shape& to, double tolerance,
+                                Similarity& map) {
+  const int n = static_cast<int>(from.hole_arms.size());
+  std::vector<int> order(to.hole_arms.size());  // of the copy's vertices, from left to right
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return to.hole_arms[i].x() < to.hole_arms[j].x(); });
+  std::vector<int> images;
+  std::vector<bool> taken(order.size());
+  for (const Vec2& arm : from.hole_arms) {
+    const Vec2 place = map(arm);
+    auto found = std::partition_point(order.begin(), order.end(), [&](int i) {
+      return to.hole_arms[i].x() < place.x() - tolerance;
+    });
+    while (found != order.end() && !((to.hole_arms[*found] - place).norm() <= tolerance)) {
+      if (to.hole_arms[*found].x() > place.x() + tolerance) return false;
+      ++found;
+    }
+    if (found == order.end() || taken[*found]) return false;
+    taken[*found] = true;
+    images.push_back(*found);
+  }
+  for (int i = 0; i < n; ++i) {
+    const int end = from.hole_next[i];
+    const int edge = map.mirrored ? images[end] : images[i];
+    if (to.hole_next[edge] != (map.mirrored ? images[i] : images[end])) return false;
+    map.hole_vertices.push_back(map.outer + images[i]);
+    map.hole_edges.push_back(map.outer + edge);
+  }
+  return true;
 }
 
 std::optional<Similarity> SimilarShapes::similarity(const Shape& from, const Shape& to) {
   const double scale = to.size / from.size;
   const double tolerance = std::min(to.noise + scale * from.noise, kFarthest * to.extent);
   const int n = static_cast<int>(from.arms.size());
+  if (to.arms.size() != from.arms.size()) return std::nullopt;
   // The lengths of the arms tell soon that two polygons are not aligned.
   std::int64_t left = kMostComparisons * n;
   for (const bool mirrored : {false, true}) {

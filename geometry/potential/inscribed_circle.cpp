@@ -27,6 +27,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include "geometry/polygon/canonical_pose.hpp"
 #include "geometry/polygon/cyclic.hpp"
@@ -102,10 +103,15 @@ class Search {
   Search(const Polygon& polygon, double unit, Start start) : beyond_(start == Start::box) {
     vertices_ = polygon.local_vertices();
     for (Vec2& v : vertices_) v /= unit;
-    for (size_t i = 0; i < vertices_.size(); ++i) {
-      const Vec2& end = after(vertices_, i);
-      // Two vertices that are equal in local coordinates have no edge between them.
-      if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
+    for (int k = 0; k < polygon.rings(); ++k) {
+      const size_t first = edges_.size();
+      for (int i = polygon.ring_start(k); i < polygon.ring_start(k + 1); ++i) {
+        const Vec2& end = vertices_[polygon.next(i)];
+        // Two vertices that are equal in local coordinates have no edge between them.
+        if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
+      }
+      if (polygon.has_holes()) links_.add(static_cast<int>(edges_.size() - first));
+      ends_.push_back(polygon.ring_start(k + 1));
     }
     if (beyond_) {
       cover_box();
@@ -202,7 +208,9 @@ class Search {
     const double along = edge.direction.dot(d);
     if (along > 0 && along < edge.length) return cross(edge.direction, d) > 0 ? 1 : -1;
     const int count = static_cast<int>(edges_.size());
-    const PolygonEdge& other = edges_[along <= 0 ? (e + count - 1) % count : (e + 1) % count];
+    const RingLinks* const links = links_.after.empty() ? nullptr : &links_;
+    const PolygonEdge& other =
+        edges_[along <= 0 ? previous(links, e, count) : next(links, e, count)];
     const Vec2 arm = along <= 0 ? d : p - edge.end;
     const Vec2 sum = (edge.direction + other.direction).normalized();
     const double above = cross(sum, arm);
@@ -218,11 +226,22 @@ class Search {
     for (const int e : edges) {
       if (edges_[e].distance(p) > least * (1 + kSameSide) + kNoise) continue;
       const int s = side(e, p);
-      if (s == 0) return strictly_inside(vertices_, p);
+      if (s == 0) return inside(p);
       sides += s;
       ++count;
     }
-    return std::abs(sides) == count ? sides > 0 : strictly_inside(vertices_, p);
+    return std::abs(sides) == count ? sides > 0 : inside(p);
+  }
+
+  // The same without knowledge of what is near.
+  [[nodiscard]] bool inside(const Vec2& p) const {
+    int first = 0;
+    for (const int end : ends_) {
+      const int side = side_of_ring(std::span(vertices_).subspan(first, end - first), p);
+      if (first == 0 ? side <= 0 : side >= 0) return false;
+      first = end;
+    }
+    return true;
   }
 
   // Bounds f in the cell from above and below, and queues the cell unless it is too low.
@@ -388,6 +407,8 @@ class Search {
   bool beyond_;          // the cells may reach beyond the polygon
   size_t examined_ = 0;  // number of cells
   std::vector<Vec2> vertices_;
+  std::vector<int> ends_;  // of the rings, in the list of vertices
+  RingLinks links_;        // between the edges of a polygon with holes
   std::vector<PolygonEdge> edges_;
   std::vector<Cell> queue_;
   std::vector<Found> found_;

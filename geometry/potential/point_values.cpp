@@ -21,7 +21,7 @@ PointEvaluator::PointEvaluator(const Polygon& polygon, const Potential& potentia
 }
 
 PointValues PointEvaluator::operator()(const Vec2& point) const {
-  const int side = side_of_ring(polygon_.vertices(), point);
+  const int side = side_of(polygon_, point);
   const Nearest near = nearest(point);
   PointValues values{};
   values.side = side > 0 ? Side::inside : side < 0 ? Side::outside : Side::boundary;

@@ -21,7 +21,7 @@ struct PointValues {
   /// Gradient of phi, 1/m: zero outside and where phi is limited to 1. On the boundary it is that
   /// of the inside, and where the gradient jumps, that of one side.
   Vec2 gradient;
-  int nearest_edge;        ///< as an index into the ring as it was given; of several, the first one
+  int nearest_edge;        ///< index in the rings as they were given; of several, the first one
   double signed_distance;  ///< distance from the boundary, m: negative inside
 };
 

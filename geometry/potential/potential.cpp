@@ -139,7 +139,7 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice,
   Potential potential = sloped_lines(polygon, reference);
   potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
   potential.roof = make_roof(skeleton, reference);
-  potential.layer = boundary_layer(polygon, *potential.roof);
+  if (!polygon.has_holes()) potential.layer = boundary_layer(polygon, *potential.roof);
   for (const Skeleton::Node& node : skeleton.nodes) {
     if (node.height >= skeleton.roof_height * (1 - kSameHeight)) {
       potential.top_points.push_back(node.point);
@@ -161,7 +161,9 @@ Potential field_potential(const Polygon& polygon, const PotentialChoice& choice,
   potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
   potential.top_points = circle.centres;
   potential.distance = make_distance_field(polygon, reference);
-  potential.layer = boundary_layer(polygon, potential.distance->slope);
+  if (!polygon.has_holes()) {
+    potential.layer = boundary_layer(polygon, potential.distance->slope);
+  }
   return potential;
 }
 
@@ -217,6 +219,14 @@ bool needs_skeleton(const PotentialChoice& choice) {
   return choice.kind == PotentialChoice::Kind::distance &&
          (choice.field == PotentialChoice::Field::roof ||
           choice.reference == PotentialChoice::Reference::roof);
+}
+
+Rings Potential::rings() const {
+  Rings rings;
+  for_each_ring(ring_links(), size(), [&](int first, int last) {
+    rings.emplace_back(vertices.begin() + first, vertices.begin() + last);
+  });
+  return rings;
 }
 
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice) {

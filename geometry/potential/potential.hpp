@@ -38,6 +38,12 @@ struct Potential {
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
+  /// The vertex or the edge after i in its ring, or before it.
+  [[nodiscard]] int next(int i) const { return apothem::next(ring_links(), i, size()); }
+  [[nodiscard]] int previous(int i) const { return apothem::previous(ring_links(), i, size()); }
+  [[nodiscard]] const RingLinks* ring_links() const { return links ? &*links : nullptr; }
+  /// The vertices of each ring: the outer one, counter-clockwise, and then the holes, clockwise.
+  [[nodiscard]] Rings rings() const;
   /// True if the limit phi <= 1 has an effect. The saturated region, where phi = 1, is the paper's
   /// singular area.
   [[nodiscard]] bool capped() const { return top > 1; }

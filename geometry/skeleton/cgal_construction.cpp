@@ -29,25 +29,25 @@ bool operator<(const boost::intrusive_ptr<Event_2<Skeleton, Traits>>& a,
 namespace apothem {
 namespace {
 
-using Ring = std::vector<Vec2>;
-
 template <class Kernel>
-SkeletonMessage construct(const Ring& ring) {
-  using Point = typename Kernel::Point_2;
-  std::vector<Point> points;
+SkeletonMessage construct(const Rings& polygon) {
+  std::vector<std::vector<typename Kernel::Point_2>> rings;
   std::map<std::pair<double, double>, int> index;  // of the vertex with these coordinates
-  for (const Vec2& v : ring) {
-    index[{v.x(), v.y()}] = static_cast<int>(points.size());
-    points.emplace_back(v.x(), v.y());
+  std::vector<Skeleton::Node> nodes;
+  for (const std::vector<Vec2>& ring : polygon) {
+    rings.emplace_back();
+    for (const Vec2& v : ring) {
+      index[{v.x(), v.y()}] = static_cast<int>(nodes.size());
+      rings.back().emplace_back(v.x(), v.y());
+      nodes.push_back({v, 0});
+    }
   }
-  const auto skeleton =
-      CGAL::create_interior_straight_skeleton_2(points.begin(), points.end(), Kernel());
+  const auto skeleton = CGAL::create_interior_straight_skeleton_2(
+      rings.front().begin(), rings.front().end(), rings.begin() + 1, rings.end(), Kernel());
   if (!skeleton) return {};
 
-  const size_t n = ring.size();
+  const size_t n = nodes.size();
   std::map<int, int> node_of;  // from CGAL's vertex id to the node
-  std::vector<Skeleton::Node> nodes;
-  for (const Vec2& v : ring) nodes.push_back({v, 0});
   for (auto v = skeleton->vertices_begin(); v != skeleton->vertices_end(); ++v) {
     const Vec2 p(CGAL::to_double(v->point().x()), CGAL::to_double(v->point().y()));
     if (v->is_contour()) {
@@ -84,9 +84,9 @@ SkeletonMessage construct(const Ring& ring) {
 
 }  // namespace
 
-SkeletonMessage cgal_skeleton(const Ring& ring, bool exact) {
-  return exact ? construct<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
-               : construct<CGAL::Exact_predicates_inexact_constructions_kernel>(ring);
+SkeletonMessage cgal_skeleton(const Rings& polygon, bool exact) {
+  return exact ? construct<CGAL::Exact_predicates_exact_constructions_kernel>(polygon)
+               : construct<CGAL::Exact_predicates_inexact_constructions_kernel>(polygon);
 }
 
 }  // namespace apothem

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "geometry/polygon/polygon_with_holes.hpp"
 #include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
@@ -13,7 +14,8 @@ namespace apothem {
 /// skeleton.
 using SkeletonMessage = std::vector<double>;
 
-/// The skeleton of a simple counter-clockwise ring, with CGAL's exact or inexact constructions.
-SkeletonMessage cgal_skeleton(const std::vector<Vec2>& ring, bool exact);
+/// The skeleton of a polygon, with CGAL's exact or inexact constructions: a simple
+/// counter-clockwise ring, and the clockwise ones of its holes.
+SkeletonMessage cgal_skeleton(const Rings& polygon, bool exact);
 
 }  // namespace apothem

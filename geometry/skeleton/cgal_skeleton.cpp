@@ -8,7 +8,6 @@
 namespace apothem {
 namespace {
 
-using Ring = std::vector<Vec2>;
 using Message = SkeletonMessage;
 
 // The nodes and faces in a message. Returns nothing if the message is incomplete.
@@ -41,21 +40,24 @@ CgalAnswer answer_of(const Message& message) {
   return {std::move(parts), ""};
 }
 
-// Rings that one helper works on, one after the other.
+// Polygons that one helper works on, one after the other.
 struct Share {
-  std::vector<size_t> rings;
+  std::vector<size_t> polygons;
   size_t done = 0;
-  int asked = 0;  // without an answer, for the next ring
+  int asked = 0;  // without an answer, for the next polygon
 
-  [[nodiscard]] bool finished() const { return done == rings.size(); }
+  [[nodiscard]] bool finished() const { return done == polygons.size(); }
 };
 
-std::vector<double> request_of(const Share& share, const std::vector<Ring>& rings, bool exact) {
+std::vector<double> request_of(const Share& share, const std::vector<Rings>& polygons, bool exact) {
   std::vector<double> request{kSkeletonRequest, exact ? 1. : 0.};
-  for (size_t k = share.done; k < share.rings.size(); ++k) {
-    const Ring& ring = rings[share.rings[k]];
-    request.push_back(static_cast<double>(ring.size()));
-    for (const Vec2& v : ring) request.insert(request.end(), {v.x(), v.y()});
+  for (size_t k = share.done; k < share.polygons.size(); ++k) {
+    const Rings& rings = polygons[share.polygons[k]];
+    request.push_back(static_cast<double>(rings.size()));
+    for (const std::vector<Vec2>& ring : rings) {
+      request.push_back(static_cast<double>(ring.size()));
+      for (const Vec2& v : ring) request.insert(request.end(), {v.x(), v.y()});
+    }
   }
   return request;
 }
@@ -70,15 +72,15 @@ constexpr int kTries = 3;
                       "the load and the memory of the machine, and run it again");
 }
 
-// Takes the answers from what a helper has sent. If it has failed, so has the next ring; if it was
-// kept from its work, the next ring is asked again.
+// Takes the answers from what a helper has sent. If it has failed, so has the next polygon; if it
+// was kept from its work, that polygon is asked again.
 void take_answers(Share& share, const HelperAnswer& sent, std::vector<CgalAnswer>& answers) {
   const Message& numbers = sent.numbers;
   for (size_t at = 0; at < numbers.size() && !share.finished(); ++share.done) {
     const auto size = static_cast<size_t>(numbers[at]);
     if (numbers.size() - at - 1 < size) break;
     const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(at + 1);
-    answers[share.rings[share.done]] =
+    answers[share.polygons[share.done]] =
         answer_of(Message(first, first + static_cast<std::ptrdiff_t>(size)));
     at += 1 + size;
     share.asked = 0;
@@ -90,28 +92,28 @@ void take_answers(Share& share, const HelperAnswer& sent, std::vector<CgalAnswer
   }
   share.asked = 0;
   const std::string failure = sent.failure();
-  answers[share.rings[share.done]] = {
+  answers[share.polygons[share.done]] = {
       std::nullopt, failure.empty() ? "CGAL's answer was cut off" : "CGAL " + failure};
   ++share.done;
 }
 
 }  // namespace
 
-CgalAnswer ask_cgal(const Ring& ring, bool exact, double seconds, const Progress& progress) {
-  return std::move(ask_cgal(std::vector<Ring>{ring}, exact, seconds, 1, progress).front());
+CgalAnswer ask_cgal(const Rings& polygon, bool exact, double seconds, const Progress& progress) {
+  return std::move(ask_cgal(std::vector<Rings>{polygon}, exact, seconds, 1, progress).front());
 }
 
-std::vector<CgalAnswer> ask_cgal(const std::vector<Ring>& rings, bool exact, double seconds,
+std::vector<CgalAnswer> ask_cgal(const std::vector<Rings>& polygons, bool exact, double seconds,
                                  int processes, const Progress& progress) {
-  std::vector<CgalAnswer> answers(rings.size());
+  std::vector<CgalAnswer> answers(polygons.size());
   std::vector<Share> shares(static_cast<size_t>(std::max(processes, 1)));
-  for (size_t i = 0; i < rings.size(); ++i) shares[i % shares.size()].rings.push_back(i);
+  for (size_t i = 0; i < polygons.size(); ++i) shares[i % shares.size()].polygons.push_back(i);
   while (true) {
     std::erase_if(shares, [](const Share& share) { return share.finished(); });
     if (shares.empty()) return answers;
     std::vector<std::vector<double>> requests;
     requests.reserve(shares.size());
-    for (const Share& share : shares) requests.push_back(request_of(share, rings, exact));
+    for (const Share& share : shares) requests.push_back(request_of(share, polygons, exact));
     const std::vector<HelperAnswer> sent = run_helpers(skeleton_program(), requests, seconds, [&] {
       if (progress) progress({exact ? "CGAL, exactly" : "CGAL", std::nullopt});
     });

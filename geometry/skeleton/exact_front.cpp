@@ -6,6 +6,7 @@
 
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/disjoint_sets.hpp"
+#include "geometry/polygon/ring_links.hpp"
 #include "geometry/skeleton/exact_planes.hpp"
 #include "geometry/skeleton/fine_frame.hpp"
 
@@ -28,21 +29,21 @@ struct Vertex {
   int plane_before, plane_after;
   bool hits;  // may reach other edges: it is not convex
   bool fresh = true;
-  int loop = kNone, next = kNone;  // the loop that it belongs to, and the vertex after it
-  int born = 0;                    // step in which the piece from it to `next` came to be
-  Time shrink = std::nullopt;      // of that piece
-  Time hit = std::nullopt;         // when it reaches the first edge,
-  int target = kNone;              // whose piece starts in this vertex
-  int target_end = kNone;          // and ended in this one
-  std::array<double, 5> rough{};   // x, y, speeds and since
-  double fast = 0;                 // bound of its speed
+  int front = kNone, next = kNone;  // the front that it belongs to, and the vertex after it
+  int born = 0;                     // step in which the piece from it to `next` came to be
+  Time shrink = std::nullopt;       // of that piece
+  Time hit = std::nullopt;          // when it reaches the first edge,
+  int target = kNone;               // whose piece starts in this vertex
+  int target_end = kNone;           // and ended in this one
+  std::array<double, 5> rough{};    // x, y, speeds and since
+  double fast = 0;                  // bound of its speed
 };
 
 // Where a vertex meets the line of a piece: beyond its start, in it, between, in its end, beyond.
 enum class Where { outside, start, between, end };
 
 struct Hit {
-  int at, piece;  // positions in the loop
+  int at, piece;  // positions in the front
   Where where;
   Fine along;  // coordinate in the direction of the piece
 };
@@ -59,7 +60,8 @@ struct Segment {
 class ExactFront {
  public:
   explicit ExactFront(const Polygon& polygon)
-      : size_(polygon.size()),
+      : polygon_(polygon),
+        size_(polygon.size()),
         planes_(polygon),
         frame_(polygon),
         lines_(frame_.lines()),
@@ -68,34 +70,45 @@ class ExactFront {
       rough_.push_back({static_cast<double>(line.tx), static_cast<double>(line.ty),
                         static_cast<double>(line.offset)});
     }
-    std::vector<int> loop;
-    loop.reserve(polygon.local_vertices().size());
     for (const Vec2& v : polygon.local_vertices()) nodes_.push_back({v, 0});
-    for (int v = 0; v < size_; ++v) {
-      loop.push_back(add_vertex(frame_.x(v), frame_.y(v), 0, previous(v, size_), v, v, size_ + v));
+    std::vector<std::vector<int>> loops(static_cast<size_t>(polygon.rings()));
+    for (int k = 0; k < polygon.rings(); ++k) {
+      for (int v = polygon.ring_start(k); v < polygon.ring_start(k + 1); ++v) {
+        loops[k].push_back(
+            add_vertex(frame_.x(v), frame_.y(v), 0, polygon.previous(v), v, v, size_ + v));
+      }
     }
-    add_loop(std::move(loop), 0);
+    add_front(loops, 0);
   }
 
   std::optional<SkeletonParts> run(const Progress& progress) {
-    while (sound_ && !loops_.empty()) {
-      const Loop loop = std::move(loops_.back());
-      loops_.pop_back();
+    while (sound_ && !fronts_.empty()) {
+      const Front front = std::move(fronts_.back());
+      fronts_.pop_back();
       if (++step_ > 8 * size_ + kProgressEvery) return std::nullopt;
-      advance(loop);
+      advance(front);
       if (progress && step_ % kProgressEvery == 0) {
         progress({"straight skeleton", std::nullopt});
       }
     }
     if (!sound_) return std::nullopt;
-    return joined(std::move(nodes_), borders_);
+    return joined(std::move(nodes_), borders_, polygon_);
   }
 
  private:
-  struct Loop {
+  // What moves from event to event on its own: a loop of vertices, or, in a polygon with holes, all
+  // of its loops, because an event may join two of them.
+  struct Front {
     std::vector<int> vertices;
+    RingLinks links;  // none if it is one loop
     Fine now;
     int born;
+
+    [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
+    // The position of the vertex after the one at a position.
+    [[nodiscard]] int next(int at) const {
+      return apothem::next(links.after.empty() ? nullptr : &links, at, size());
+    }
   };
 
   // ----------------------------------------------------------------------------------------------
@@ -119,22 +132,25 @@ class ExactFront {
     return static_cast<int>(vertices_.size()) - 1;
   }
 
-  void add_loop(std::vector<int> loop, const Fine& now) {
-    if (loop.size() < 3) {
-      sound_ = false;
-      return;
+  void add_front(const std::vector<std::vector<int>>& loops, const Fine& now) {
+    if (loops.empty()) return;
+    Front front{{}, {}, now, step_};
+    const int name = loops.front().front();
+    for (const std::vector<int>& loop : loops) {
+      if (loop.size() < 3) sound_ = false;
+      for (size_t i = 0; i < loop.size(); ++i) {
+        Vertex& v = vertices_[loop[i]];
+        v.front = name;
+        const int end = after(loop, i);
+        if (v.next == end) continue;
+        v.next = end;
+        v.born = step_;
+        v.shrink = shrink_time(v, now);
+      }
+      front.vertices.insert(front.vertices.end(), loop.begin(), loop.end());
+      if (loops.size() > 1) front.links.add(static_cast<int>(loop.size()));
     }
-    const int name = loop.front();
-    for (size_t i = 0; i < loop.size(); ++i) {
-      Vertex& v = vertices_[loop[i]];
-      v.loop = name;
-      const int end = after(loop, i);
-      if (v.next == end) continue;
-      v.next = end;
-      v.born = step_;
-      v.shrink = shrink_time(v, now);
-    }
-    loops_.push_back({std::move(loop), now, step_});
+    fronts_.push_back(std::move(front));
   }
 
   [[nodiscard]] static Fine x_of(const Vertex& v, const Fine& t) {
@@ -230,7 +246,7 @@ class ExactFront {
     const Vertex& u = vertices_[piece];
     if (u.next == vertex_number(c) || piece == vertex_number(c)) return;
     const double first = c.hit ? static_cast<double>(*c.hit) : HUGE_VAL;
-    if (misses(c, u, rough_now, first)) return;
+    if (misses(c, u, rough_now, first) || same_start(c, u)) return;
     const Time time = reach_time(c, u.after, now);
     if (!time || (c.hit && !(*time < *c.hit))) return;
     if (place(c, u, *time) == Where::outside) return;
@@ -238,28 +254,33 @@ class ExactFront {
     c.target = piece;
     c.target_end = u.next;
   }
+  // True if the piece from u on begins or ends where vertex c starts. There it is part of another
+  // corner of the region that the event has left, which only touches that of c.
+  [[nodiscard]] bool same_start(const Vertex& c, const Vertex& u) const {
+    return c.node == u.node || c.node == vertices_[u.next].node;
+  }
   [[nodiscard]] int vertex_number(const Vertex& v) const {
     return static_cast<int>(&v - vertices_.data());
   }
 
-  // Brings up to date what the vertices of a loop hit first.
-  void look_ahead(const Loop& loop) {
-    const auto now = static_cast<double>(loop.now);
+  // Brings up to date what the vertices of a front hit first.
+  void look_ahead(const Front& front) {
+    const auto now = static_cast<double>(front.now);
     std::vector<int> fresh_pieces;
-    for (const int u : loop.vertices) {
-      if (vertices_[u].born == loop.born) fresh_pieces.push_back(u);
+    for (const int u : front.vertices) {
+      if (vertices_[u].born == front.born) fresh_pieces.push_back(u);
     }
-    for (const int i : loop.vertices) {
+    for (const int i : front.vertices) {
       Vertex& c = vertices_[i];
       if (!c.hits) continue;
-      const bool lost =
-          c.hit && (vertices_[c.target].loop != c.loop || vertices_[c.target].next != c.target_end);
+      const bool lost = c.hit && (vertices_[c.target].front != c.front ||
+                                  vertices_[c.target].next != c.target_end);
       if (c.fresh || lost) {
         c.fresh = false;
         c.hit.reset();
-        for (const int u : loop.vertices) look(c, u, loop.now, now);
+        for (const int u : front.vertices) look(c, u, front.now, now);
       } else {
-        for (const int u : fresh_pieces) look(c, u, loop.now, now);
+        for (const int u : fresh_pieces) look(c, u, front.now, now);
       }
     }
   }
@@ -274,12 +295,12 @@ class ExactFront {
     return !known(p) || !known(q) || planes_.simultaneous(p, q);
   }
 
-  // Moves a loop to its next event, and makes one loop of each part that remains.
-  void advance(const Loop& loop) {
-    look_ahead(loop);
+  // Moves a front to its next event, and makes loops of what remains.
+  void advance(const Front& front) {
+    look_ahead(front);
     Time time;
     Triple triple{};
-    for (const int i : loop.vertices) {
+    for (const int i : front.vertices) {
       const Vertex& v = vertices_[i];
       if (v.shrink && (!time || *v.shrink < *time)) time = v.shrink, triple = shrink_triple(v);
       if (v.hit && (!time || *v.hit < *time)) {
@@ -291,33 +312,32 @@ class ExactFront {
       sound_ = false;
       return;
     }
-    const int m = static_cast<int>(loop.vertices.size());
+    const int m = front.size();
     std::vector<bool> shrunk(m);
     std::vector<Hit> hits;
     const Fine late = *time + kFineNoise;
     for (int i = 0; i < m; ++i) {
-      const Vertex& v = vertices_[loop.vertices[i]];
+      const Vertex& v = vertices_[front.vertices[i]];
       if (v.shrink && *v.shrink < late) {
         shrunk[i] = same_time(*v.shrink, shrink_triple(v), *time, triple);
       }
       if (!v.hit || !(*v.hit < late)) continue;
       const Triple own = hit_triple(v, vertices_[v.target].after);
-      if (same_time(*v.hit, own, *time, triple)) add_hits(loop, i, *time, triple, hits);
+      if (same_time(*v.hit, own, *time, triple)) add_hits(front, i, *time, triple, hits);
     }
-    meet(loop, *time, shrunk, hits);
+    meet(front, *time, shrunk, hits);
   }
 
   // Everything that a vertex hits at a time.
-  void add_hits(const Loop& loop, int at, const Fine& time, const Triple& triple,
+  void add_hits(const Front& front, int at, const Fine& time, const Triple& triple,
                 std::vector<Hit>& hits) const {
-    const Vertex& c = vertices_[loop.vertices[at]];
-    const auto now = static_cast<double>(loop.now);
-    const int m = static_cast<int>(loop.vertices.size());
-    for (int i = 0; i < m; ++i) {
-      const Vertex& u = vertices_[loop.vertices[i]];
-      if (i == at || next(i, m) == at) continue;
-      if (misses(c, u, now, static_cast<double>(time))) continue;
-      const Time reach = reach_time(c, u.after, loop.now);
+    const Vertex& c = vertices_[front.vertices[at]];
+    const auto now = static_cast<double>(front.now);
+    for (int i = 0; i < front.size(); ++i) {
+      const Vertex& u = vertices_[front.vertices[i]];
+      if (i == at || front.next(i) == at) continue;
+      if (misses(c, u, now, static_cast<double>(time)) || same_start(c, u)) continue;
+      const Time reach = reach_time(c, u.after, front.now);
       if (!reach || !same_time(*reach, hit_triple(c, u.after), time, triple)) continue;
       const Where where = place(c, u, *reach);
       if (where == Where::outside) continue;
@@ -326,44 +346,44 @@ class ExactFront {
   }
 
   // ----------------------------------------------------------------------------------------------
-  // What the loop becomes
+  // What the front becomes
 
-  void meet(const Loop& loop, const Fine& time, const std::vector<bool>& shrunk,
+  void meet(const Front& front, const Fine& time, const std::vector<bool>& shrunk,
             std::vector<Hit>& hits) {
-    const int m = static_cast<int>(loop.vertices.size());
+    const int m = front.size();
     DisjointSets same(m);
     std::vector<bool> moved(m);  // vertices that take part
     for (int i = 0; i < m; ++i) {
       if (!shrunk[i]) continue;
-      same.join(i, next(i, m));
-      moved[i] = moved[next(i, m)] = true;
+      same.join(i, front.next(i));
+      moved[i] = moved[front.next(i)] = true;
     }
     for (const Hit& hit : hits) {
       moved[hit.at] = true;
       if (hit.where == Where::between) continue;
-      const int end = hit.where == Where::start ? hit.piece : next(hit.piece, m);
+      const int end = hit.where == Where::start ? hit.piece : front.next(hit.piece);
       moved[end] = true;
       same.join(hit.at, end);
     }
-    join_hits(loop, hits, same);
+    join_hits(front, hits, same);
     std::vector<bool> touched(m);  // sets that take part
     for (int i = 0; i < m; ++i) {
       if (moved[i]) touched[same.find(i)] = true;
     }
-    std::vector<Segment> segments = divided(loop, shrunk, hits, same);
-    const std::vector<int> nodes = add_nodes(loop, time, touched, same);
+    std::vector<Segment> segments = divided(front, shrunk, hits, same);
+    const std::vector<int> nodes = add_nodes(front, time, touched, same);
     cancel(segments, touched, nodes);
-    follow(loop, time, segments, touched, nodes);
+    follow(front, time, segments, touched, nodes);
     close_loops(segments, time);
   }
 
   // Sorts the hits along each piece, and joins those in the same place.
-  void join_hits(const Loop& loop, std::vector<Hit>& hits, DisjointSets& same) {
+  void join_hits(const Front& front, std::vector<Hit>& hits, DisjointSets& same) {
     std::erase_if(hits, [](const Hit& hit) { return hit.where != Where::between; });
     const auto vertex = [&](const Hit& hit) -> const Vertex& {
-      return vertices_[loop.vertices[hit.at]];
+      return vertices_[front.vertices[hit.at]];
     };
-    const auto edge = [&](const Hit& hit) { return vertices_[loop.vertices[hit.piece]].after; };
+    const auto edge = [&](const Hit& hit) { return vertices_[front.vertices[hit.piece]].after; };
     std::sort(hits.begin(), hits.end(), [&](const Hit& p, const Hit& q) {
       return p.piece != q.piece ? p.piece < q.piece : p.along < q.along;
     });
@@ -379,14 +399,14 @@ class ExactFront {
   }
 
   // The pieces that are left, divided where they are hit.
-  std::vector<Segment> divided(const Loop& loop, const std::vector<bool>& shrunk,
+  std::vector<Segment> divided(const Front& front, const std::vector<bool>& shrunk,
                                const std::vector<Hit>& hits, DisjointSets& same) {
-    const int m = static_cast<int>(loop.vertices.size());
+    const int m = front.size();
     std::vector<Segment> segments;
     auto hit = hits.begin();
     for (int i = 0; i < m; ++i) {
       if (shrunk[i]) continue;
-      const int edge = vertices_[loop.vertices[i]].after;
+      const int edge = vertices_[front.vertices[i]].after;
       int from = same.find(i);
       const auto add = [&](int to) {
         if (to == from) return;
@@ -397,7 +417,7 @@ class ExactFront {
       for (; hit != hits.end() && hit->piece < i; ++hit) {
       }
       for (; hit != hits.end() && hit->piece == i; ++hit) add(same.find(hit->at));
-      add(same.find(next(i, m)));
+      add(same.find(front.next(i)));
       // A piece of some length cannot have both ends in the same place.
       if (segments.size() == first) sound_ = false;
     }
@@ -406,18 +426,18 @@ class ExactFront {
 
   // Makes a node of each set of vertices that takes part, and ends the arcs of these vertices
   // there.
-  std::vector<int> add_nodes(const Loop& loop, const Fine& time, const std::vector<bool>& touched,
+  std::vector<int> add_nodes(const Front& front, const Fine& time, const std::vector<bool>& touched,
                              DisjointSets& same) {
-    const int m = static_cast<int>(loop.vertices.size());
+    const int m = front.size();
     std::vector<int> nodes(m, kNone);
     for (int i = 0; i < m; ++i) {
       const int set = same.find(i);
       if (!touched[set]) continue;
-      Vertex& v = vertices_[loop.vertices[i]];
-      v.loop = kNone;
+      Vertex& v = vertices_[front.vertices[i]];
+      v.front = kNone;
       if (nodes[set] == kNone) {
         nodes[set] = static_cast<int>(nodes_.size());
-        const Vertex& place = vertices_[loop.vertices[set]];
+        const Vertex& place = vertices_[front.vertices[set]];
         nodes_.push_back(frame_.node(x_of(place, time), y_of(place, time), time));
       }
       borders_[v.before].push_back({v.node, nodes[set]});
@@ -445,9 +465,9 @@ class ExactFront {
   }
 
   // Finds which segment follows on which, and the vertices between them.
-  void follow(const Loop& loop, const Fine& time, std::vector<Segment>& segments,
+  void follow(const Front& front, const Fine& time, std::vector<Segment>& segments,
               const std::vector<bool>& touched, const std::vector<int>& nodes) {
-    std::vector<int> leaving(loop.vertices.size(), kNone);  // the last segment from each set
+    std::vector<int> leaving(front.vertices.size(), kNone);  // the last segment from each set
     for (int s = 0; s < static_cast<int>(segments.size()); ++s) {
       segments[s].other = std::exchange(leaving[segments[s].from], s);
     }
@@ -464,11 +484,11 @@ class ExactFront {
       }
       Segment& out = segments[in.follower];
       if (!touched[in.to]) {
-        out.vertex = loop.vertices[in.to];
+        out.vertex = front.vertices[in.to];
       } else if (in.edge == out.edge) {
         sound_ = false;
       } else {
-        const Vertex place = vertices_[loop.vertices[in.to]];
+        const Vertex place = vertices_[front.vertices[in.to]];
         out.vertex = add_vertex(x_of(place, time), y_of(place, time), time, in.edge, out.edge,
                                 nodes[in.to], kNone);
       }
@@ -488,16 +508,24 @@ class ExactFront {
   }
 
   void close_loops(std::vector<Segment>& segments, const Fine& time) {
+    std::vector<std::vector<int>> loops;
     for (size_t s = 0; sound_ && s < segments.size(); ++s) {
       std::vector<int> loop;
       for (int at = static_cast<int>(s); !segments[at].gone; at = segments[at].follower) {
         segments[at].gone = true;
         loop.push_back(segments[at].vertex);
       }
-      if (!loop.empty()) add_loop(std::move(loop), time);
+      if (loop.empty()) continue;
+      if (!polygon_.has_holes()) {
+        add_front({std::move(loop)}, time);
+      } else {
+        loops.push_back(std::move(loop));
+      }
     }
+    if (sound_) add_front(loops, time);
   }
 
+  const Polygon& polygon_;
   int size_;
   ExactPlanes planes_;
   FineFrame frame_;
@@ -506,7 +534,7 @@ class ExactFront {
   bool sound_ = true;                         // false once something has happened that cannot be
   int step_ = 0;
   std::vector<Vertex> vertices_;
-  std::vector<Loop> loops_;
+  std::vector<Front> fronts_;
   std::vector<Skeleton::Node> nodes_;
   std::vector<std::vector<FaceBorder>> borders_;  // per face
 };

@@ -49,8 +49,9 @@ ExactPlanes::ExactPlanes(const Polygon& polygon) {
   planes_.resize(2 * static_cast<size_t>(n));
   for (int e = 0; e < n; ++e) {
     const auto& [x, y] = points[e];
-    const Whole dx = points[(e + 1) % n][0] - x;
-    const Whole dy = points[(e + 1) % n][1] - y;
+    const auto& [end_x, end_y] = points[polygon.next(e)];
+    const Whole dx = end_x - x;
+    const Whole dy = end_y - y;
     planes_[e] = {-dy, dx, dx * y - dy * x, dx * dx + dy * dy};
     planes_[n + e] = {dx, dy, dx * x + dy * y, 0};
   }

@@ -43,7 +43,7 @@ class FineFrame {
   [[nodiscard]] std::vector<FineLine> lines() const {
     std::vector<FineLine> lines;
     for (int e = 0; e < polygon_.size(); ++e) {
-      const int end = e + 1 == polygon_.size() ? 0 : e + 1;
+      const int end = polygon_.next(e);
       const Fine dx = x(end) - x(e);
       const Fine dy = y(end) - y(e);
       const Fine length = sqrt(dx * dx + dy * dy);

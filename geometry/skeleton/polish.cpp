@@ -3,7 +3,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
 
 namespace apothem {
@@ -15,7 +14,10 @@ using Faces = std::vector<std::vector<int>>;
 class Polish {
  public:
   Polish(Skeleton& skeleton, const Polygon& polygon)
-      : skeleton_(skeleton), lines_(edge_lines(polygon)), faces_at_(skeleton.nodes.size()) {
+      : skeleton_(skeleton),
+        polygon_(polygon),
+        lines_(edge_lines(polygon)),
+        faces_at_(skeleton.nodes.size()) {
     const int node_count = static_cast<int>(skeleton.nodes.size());
     for (size_t f = 0; f < skeleton.faces.size(); ++f) {
       for (const int node : skeleton.faces[f]) {
@@ -39,7 +41,7 @@ class Polish {
     for (const int f : faces) {
       const EdgeLine& line = lines_[f];
       add({line.normal().x(), line.normal().y(), -1}, line.distance(node.point) - node.height);
-      const int g = next(f, static_cast<int>(lines_.size()));
+      const int g = polygon_.next(f);
       if (std::find(faces.begin(), faces.end(), g) != faces.end()) add_bisector(f, g, node.point);
     }
     const auto count = static_cast<Eigen::Index>(off_.size());
@@ -70,6 +72,7 @@ class Polish {
   }
 
   Skeleton& skeleton_;
+  const Polygon& polygon_;
   std::vector<EdgeLine> lines_;
   Faces faces_at_;                  // faces that meet at each node
   std::vector<double> rows_, off_;  // matrix, by rows, and right-hand side of one node

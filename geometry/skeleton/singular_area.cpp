@@ -1,7 +1,9 @@
 #include "geometry/skeleton/singular_area.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 
@@ -97,8 +99,14 @@ void close(std::vector<int>& ring) {
 
 // ------------------------------------------------------------------------------------------------
 
-// Adds one loop of level lines around each connected set of nodes above the depth.
-void add_polygons(const Level& level, SingularArea& result) {
+// A closed level line, as nodes, and a node above the depth beside it.
+struct Loop {
+  std::vector<int> nodes;
+  int inner;
+};
+
+// The loops of level lines, with {t >= depth} on their left.
+std::vector<Loop> level_loops(const Level& level) {
   using Ends = std::pair<int, int>;
   std::map<Ends, Ends> next;  // from the arc of a cut to that of the next cut, counter-clockwise
   const int n = static_cast<int>(level.skeleton().faces.size());
@@ -109,23 +117,91 @@ void add_polygons(const Level& level, SingularArea& result) {
         [&](Level::Cut c) { next[c->first] = rising; });
   }
   assert(next.size() == level.cuts().size());
+  std::vector<Loop> loops;
   while (!next.empty()) {
-    std::vector<int> loop;
+    Loop loop{{}, next.begin()->first.second};
     for (auto at = next.begin(); at != next.end();) {
-      append(loop, level.cuts().at(at->first));
+      append(loop.nodes, level.cuts().at(at->first));
       const Ends following = at->second;
       next.erase(at);
       at = next.find(following);
     }
-    close(loop);
-    std::vector<Vec2> ring;
-    for (const int i : loop) {
-      const Vec2& point = level.nodes()[i].point;
-      if (ring.empty() || ring.back() != point) ring.push_back(point);
+    close(loop.nodes);
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+// Without equal neighbours.
+std::vector<Vec2> places(const Level& level, const std::vector<int>& nodes) {
+  std::vector<Vec2> ring;
+  for (const int i : nodes) {
+    const Vec2& point = level.nodes()[i].point;
+    if (ring.empty() || ring.back() != point) ring.push_back(point);
+  }
+  while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  return ring;
+}
+
+// The simple loops of which a loop consists that passes a node several times, where the part below
+// the depth around a hole of the polygon touches another one.
+std::vector<std::vector<int>> simple_loops(const std::vector<int>& loop) {
+  std::vector<std::vector<int>> result;
+  std::vector<int> path;
+  std::map<int, size_t> place_of;  // of the nodes in the path
+  for (const int node : loop) {
+    const auto known = place_of.find(node);
+    if (known != place_of.end()) {
+      const auto first = path.begin() + static_cast<std::ptrdiff_t>(known->second);
+      result.emplace_back(first, path.end());
+      for (const int passed : result.back()) place_of.erase(passed);
+      path.erase(first, path.end());
     }
-    while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+    place_of[node] = path.size();
+    path.push_back(node);
+  }
+  result.push_back(std::move(path));
+  return result;
+}
+
+// Adds the polygons of a skeleton with cycles: the loops around each connected set of nodes above
+// the depth, of which the one of the largest area is the outer one.
+void add_polygons_with_holes(const Level& level, const std::vector<Loop>& loops,
+                             SingularArea& result) {
+  DisjointSets above(level.skeleton().nodes.size());
+  for (const Skeleton::Arc& arc : level.skeleton().arcs) {
+    if (level.above(arc.start) && level.above(arc.end)) above.join(arc.start, arc.end);
+  }
+  std::map<int, Rings> components;
+  for (const Loop& loop : loops) {
+    Rings& rings = components[above.find(loop.inner)];
+    for (const std::vector<int>& nodes : simple_loops(loop.nodes)) {
+      std::vector<Vec2> ring = places(level, nodes);
+      if (ring.size() > 2) rings.push_back(std::move(ring));
+    }
+  }
+  for (auto& [node, rings] : components) {
+    if (rings.empty()) continue;  // flattened by round-off
+    const auto outer =
+        std::max_element(rings.begin(), rings.end(),
+                         [](const auto& p, const auto& q) { return ring_area(p) < ring_area(q); });
+    std::swap(*outer, rings.front());
+    result.polygons.push_back({std::move(rings.front()), {}});
+    result.polygons.back().holes.assign(std::make_move_iterator(rings.begin() + 1),
+                                        std::make_move_iterator(rings.end()));
+  }
+}
+
+// Adds one loop of level lines around each connected set of nodes above the depth.
+void add_polygons(const Level& level, SingularArea& result) {
+  const std::vector<Loop> loops = level_loops(level);
+  const Skeleton& skeleton = level.skeleton();
+  const bool tree = skeleton.arcs.size() + 1 == skeleton.nodes.size() + skeleton.faces.size();
+  if (!tree) return add_polygons_with_holes(level, loops, result);
+  for (const Loop& loop : loops) {
+    std::vector<Vec2> ring = places(level, loop.nodes);
     // A loop that round-off has flattened is reported as the segment or the point that is left.
-    if (ring.size() > 2) result.polygons.push_back(std::move(ring));
+    if (ring.size() > 2) result.polygons.push_back({std::move(ring), {}});
     if (ring.size() == 2) result.segments.push_back({ring[0], ring[1]});
     if (ring.size() == 1) result.points.push_back(ring[0]);
   }
@@ -231,11 +307,7 @@ const char* kind_name(SingularArea::Kind kind) {
   return names[static_cast<int>(kind)];
 }
 
-double SingularArea::area() const {
-  double sum = 0;
-  for (const std::vector<Vec2>& polygon : polygons) sum += ring_area(polygon);
-  return sum;
-}
+double SingularArea::area() const { return area_of(polygons); }
 
 SingularArea singular_area(const Skeleton& skeleton, double depth) {
   const Level level(skeleton, depth);

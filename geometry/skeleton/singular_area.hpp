@@ -5,10 +5,11 @@
 // Every arc of the skeleton that rises through the depth is crossed once; one sign per node decides
 // where that is so. The level lines in the faces join these crossings to closed loops. A face is
 // monotone along its edge, so a crossing where the border of the face goes down belongs to the
-// preceding one where it goes up; no distances are compared. The inner arcs form a tree, so the
-// nodes above the depth fall into subtrees, and each of them is surrounded by exactly one loop.
-// There may be several components but no holes: water on the roof runs off, hence {t < r} is
-// connected to the outside.
+// preceding one where it goes up; no distances are compared. Nodes above the depth that are
+// connected by arcs above it lie in the same component. Water on the roof runs off, hence every
+// part of {t < r} is connected to the outside or to a hole of the polygon. So without holes, each
+// component is surrounded by exactly one loop. Otherwise it may have further loops, which surround
+// parts with holes of the polygon: they are the holes of the component.
 //
 // A tolerance is needed only to decide whether a node is exactly as high as r. Without it,
 // round-off would hide the right answer for r equal to the height of the roof, which is a point or
@@ -19,6 +20,7 @@
 #include <array>
 #include <vector>
 
+#include "geometry/polygon/polygon_with_holes.hpp"
 #include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
@@ -28,7 +30,7 @@ namespace apothem {
 struct SingularArea {
   /// What a singular area consists of.
   enum class Kind { none, point, segment, polygons };
-  std::vector<std::vector<Vec2>> polygons;    ///< polygons of positive area, counter-clockwise
+  std::vector<PolygonWithHoles> polygons;     ///< polygons of positive area
   std::vector<std::array<Vec2, 2>> segments;  ///< end points of the level ridges as high as r
   std::vector<Vec2> points;                   ///< isolated maxima of the roof as high as r
 

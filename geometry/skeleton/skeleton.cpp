@@ -17,14 +17,13 @@
 namespace apothem {
 namespace {
 
-using Ring = std::vector<Vec2>;
 using Node = Skeleton::Node;
 
-// The ring as a polygon, if it is a simple one and not clockwise.
-std::optional<Polygon> simple_polygon(const Ring& ring) {
+// The rings as a polygon, if they are those of one, each in the right sense.
+std::optional<Polygon> simple_polygon(const Rings& rings) {
   try {
-    Polygon polygon(ring);
-    if (polygon.vertices() == ring) return polygon;
+    Polygon polygon(rings.front(), {rings.begin() + 1, rings.end()});
+    if (rings_of(polygon) == rings) return polygon;
   } catch (const InvalidPolygon&) {
   }
   return std::nullopt;
@@ -50,10 +49,12 @@ struct Frame {
     outline = simple_polygon(inward(polygon));
   }
 
-  [[nodiscard]] Ring inward(const Polygon& polygon) const {
-    Ring ring = polygon.vertices();
-    for (Vec2& v : ring) v = (v - centre) * scale;
-    return ring;
+  [[nodiscard]] Rings inward(const Polygon& polygon) const {
+    Rings rings = rings_of(polygon);
+    for (std::vector<Vec2>& ring : rings) {
+      for (Vec2& v : ring) v = (v - centre) * scale;
+    }
+    return rings;
   }
 
   void outward(Skeleton& skeleton, const Polygon& polygon) const {
@@ -62,8 +63,8 @@ struct Frame {
       node.point = node.point / scale + shift;
       node.height /= scale;
     }
-    const Ring ring = polygon.local_vertices();
-    for (size_t i = 0; i < ring.size(); ++i) skeleton.nodes[i] = {ring[i], 0};
+    const std::vector<Vec2> vertices = polygon.local_vertices();
+    for (size_t i = 0; i < vertices.size(); ++i) skeleton.nodes[i] = {vertices[i], 0};
   }
 };
 
@@ -88,17 +89,19 @@ constexpr Attempt kAttempts[] = {{0, false},     {1e-13, false}, {1e-12, false},
 // the correction of the nodes removes.
 constexpr Attempt kManySides = {1e-11, false};
 
-Ring jittered(Ring ring, double amplitude, unsigned seed) {
+Rings jittered(Rings rings, double amplitude, unsigned seed) {
   RandomNumbers numbers(seed);
   const auto random = [&] { return numbers.uniform(-1, 1); };
-  const Ring original = ring;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const double nearest = std::min((original[i] - before(original, i)).norm(),
-                                    (original[i] - after(original, i)).norm());
-    const double step = std::min(amplitude, nearest / 1000);
-    ring[i] += step * Vec2(random(), random());
+  for (std::vector<Vec2>& ring : rings) {
+    const std::vector<Vec2> original = ring;
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const double nearest = std::min((original[i] - before(original, i)).norm(),
+                                      (original[i] - after(original, i)).norm());
+      const double step = std::min(amplitude, nearest / 1000);
+      ring[i] += step * Vec2(random(), random());
+    }
   }
-  return ring;
+  return rings;
 }
 
 // Limit of processor time for CGAL, s. For a polygon without symmetry CGAL needs about n^2 steps.
@@ -127,15 +130,15 @@ class Search {
       : polygon_(polygon),
         progress_(progress),
         frame_(polygon),
-        ring_(frame_.inward(polygon)),
+        rings_(frame_.inward(polygon)),
         first_answer_(std::move(first_answer)) {}
 
   // What CGAL is asked first, if the search begins with CGAL.
   [[nodiscard]] std::optional<FirstQuestion> first_question() const {
-    if (polygon_.size() > kMany || polygon_.is_convex() || !simple_polygon(ring_)) {
+    if (polygon_.size() > kMany || polygon_.is_convex() || !simple_polygon(rings_)) {
       return std::nullopt;
     }
-    return FirstQuestion{ring_, time_limit(ring_.size(), kAttempts[0].exact)};
+    return FirstQuestion{rings_, time_limit(polygon_.vertices().size(), kAttempts[0].exact)};
   }
 
   Skeleton run() {
@@ -158,7 +161,7 @@ class Search {
 
  private:
   bool try_convex() {
-    found_ = assemble(shrink_convex(polygon_));
+    found_ = assemble(shrink_convex(polygon_), polygon_);
     return passes() && settled();
   }
 
@@ -167,20 +170,20 @@ class Search {
     if (!frame_.outline) return fail("the outline is not simple in scaled coordinates");
     std::optional<SkeletonParts> parts = trace_wavefront(*frame_.outline, attempt + 1, progress_);
     if (!parts) return fail("the wavefront was not traced to its end");
-    found_ = assemble(std::move(*parts));
+    found_ = assemble(std::move(*parts), polygon_);
     return corrected();
   }
 
   bool try_cgal(const Attempt& attempt) {
-    const Ring input = jittered(ring_, attempt.jitter, ++seed_);
+    const Rings input = jittered(rings_, attempt.jitter, ++seed_);
     if (!simple_polygon(input)) return fail("the outline is not simple in scaled coordinates");
     CgalAnswer answer =
-        first_answer_
-            ? std::move(*first_answer_)
-            : ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact), progress_);
+        first_answer_ ? std::move(*first_answer_)
+                      : ask_cgal(input, attempt.exact,
+                                 time_limit(polygon_.vertices().size(), attempt.exact), progress_);
     first_answer_.reset();
     if (!answer.parts) return fail(answer.failure);
-    found_ = assemble(std::move(*answer.parts));
+    found_ = assemble(std::move(*answer.parts), polygon_);
     found_.exact = attempt.exact;
     return corrected();
   }
@@ -203,7 +206,7 @@ class Search {
     }
     if (polygon_.size() <= kMostExact) {
       if (std::optional<SkeletonParts> parts = exact_skeleton(polygon_, progress_)) {
-        found_ = assemble(std::move(*parts));
+        found_ = assemble(std::move(*parts), polygon_);
         found_.attempts = found.attempts;
         found_.exact = true;
         if (!broken_law(found_, polygon_)) return true;
@@ -228,7 +231,7 @@ class Search {
   const Polygon& polygon_;
   const Progress& progress_;
   Frame frame_;
-  Ring ring_;  // in the frame's coordinates
+  Rings rings_;  // in the frame's coordinates
   std::optional<CgalAnswer> first_answer_;
   unsigned seed_ = 0;
   std::vector<std::string> failures_;

@@ -1,7 +1,7 @@
-// The straight skeleton of a simple polygon. It consists of the paths of the vertices while the
-// mitred boundary moves inwards. The roof over a point is the time at which the boundary passes it.
-// Every face of the skeleton belongs to one edge of the polygon, and in it the roof is the distance
-// to the line of that edge.
+// The straight skeleton of a polygon, with or without holes. It consists of the paths of the
+// vertices while the mitred boundary moves inwards. The roof over a point is the time at which the
+// boundary passes it. Every face of the skeleton belongs to one edge of the polygon, and in it the
+// roof is the distance to the line of that edge.
 //
 // Every construction may fail: CGAL's sometimes returns nothing, never returns, crashes or returns
 // a wrong skeleton. Therefore CGAL runs in a helper program with a time limit, every result is
@@ -47,7 +47,8 @@ struct Skeleton {
   };
   std::vector<Node> nodes;  ///< the first n nodes are the polygon's vertices, of height 0
   std::vector<Arc> arcs;    ///< the first n arcs are the polygon's edges
-  /// Node indices of the face of each edge e, counter-clockwise, beginning with e and e + 1.
+  /// Node indices of the face of each edge e, counter-clockwise, beginning with the ends
+  /// of the edge: e and polygon.next(e).
   std::vector<std::vector<int>> faces;
   double roof_height = 0;  ///< largest height of a node, m
   int attempts = 1;        ///< number of constructions until one passed the laws
@@ -75,9 +76,11 @@ Skeleton straight_skeleton(const Polygon& polygon, const Progress& progress = {}
 /// - All indices are in range and all numbers are finite. The first nodes and arcs are the vertices
 ///   and edges of the polygon.
 /// - Each face starts with its own edge. Each inner arc lies between two faces that pass it in
-///   opposite senses. The inner arcs form one tree that reaches every node. Hence the faces form a
-///   disc.
-/// - Every node lies inside the polygon. Its height is its distance to the line of every edge whose
+///   opposite senses. The inner arcs are connected, reach every node and have as many independent
+///   cycles as the polygon has holes; without holes they form a tree. Hence the faces form a disc
+///   with so many holes.
+/// - Every node lies inside the polygon, outside of its holes. Its height is its distance to the
+/// line of every edge whose
 ///   face meets there.
 /// - Every face is simple, is monotone along its edge and has a positive area, and the areas sum to
 ///   the area of the polygon. Hence the faces tile the polygon.

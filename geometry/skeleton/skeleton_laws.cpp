@@ -24,6 +24,7 @@ class Laws {
  public:
   Laws(const Skeleton& skeleton, const Polygon& polygon)
       : skeleton_(skeleton),
+        polygon_(polygon),
         ring_(polygon.local_vertices()),
         lines_(edge_lines(polygon)),
         size_(polygon.size()),
@@ -34,7 +35,7 @@ class Laws {
     check_numbers();
     if (!broken_) check_outline();
     if (!broken_) check_arcs();
-    if (!broken_) check_tree();
+    if (!broken_) check_network();
     if (!broken_) check_heights();
     if (!broken_) check_faces();
     if (!broken_) check_valleys();
@@ -80,11 +81,11 @@ class Laws {
       const Node& node = skeleton_.nodes[e];
       if (node.point != ring_[e] || node.height != 0) fail("a vertex of the polygon is not a node");
       const Skeleton::Arc& arc = skeleton_.arcs[e];
-      if (arc.start != e || arc.end != next(e, size_) || arc.left != e || arc.right != -1) {
+      if (arc.start != e || arc.end != polygon_.next(e) || arc.left != e || arc.right != -1) {
         fail("an edge of the polygon is not an arc");
       }
       const std::vector<int>& face = skeleton_.faces[e];
-      if (face.size() < 3 || face[0] != e || face[1] != next(e, size_)) {
+      if (face.size() < 3 || face[0] != e || face[1] != polygon_.next(e)) {
         fail("a face does not start with its own edge");
       }
     }
@@ -113,16 +114,21 @@ class Laws {
     if (passed != left_of_.size()) fail("an arc is not a side of its faces");
   }
 
-  void check_tree() {
+  // The inner arcs have as many independent cycles as the polygon has holes.
+  void check_network() {
+    const int holes = polygon_.rings() - 1;
+    int cycles = 0;
     DisjointSets joined(skeleton_.nodes.size());
     for (size_t a = static_cast<size_t>(size_); a < skeleton_.arcs.size(); ++a) {
-      if (!joined.join(skeleton_.arcs[a].start, skeleton_.arcs[a].end)) {
-        fail("the inner arcs contain a cycle");
-      }
+      if (!joined.join(skeleton_.arcs[a].start, skeleton_.arcs[a].end)) ++cycles;
     }
-    if (skeleton_.arcs.size() - static_cast<size_t>(size_) + 1 != skeleton_.nodes.size()) {
-      fail("the inner arcs do not reach every node");
+    if (cycles > holes) {
+      fail(holes == 0 ? "the inner arcs contain a cycle"
+                      : "the inner arcs contain more cycles than there are holes");
     }
+    if (cycles < holes) fail("a hole is not surrounded by inner arcs");
+    const size_t joining = skeleton_.arcs.size() - static_cast<size_t>(size_ + cycles);
+    if (joining + 1 != skeleton_.nodes.size()) fail("the inner arcs do not reach every node");
   }
 
   void check_heights() {
@@ -267,7 +273,7 @@ class Laws {
     const std::vector<size_t> nodes = sorted(heights, heights.size());
     std::vector<double> bottoms;
     for (int e = 0; e < size_; ++e) {
-      bottoms.push_back(std::min(ring_[e].y(), ring_[next(e, size_)].y()));
+      bottoms.push_back(std::min(ring_[e].y(), ring_[polygon_.next(e)].y()));
     }
     const std::vector<size_t> edges = sorted(bottoms, bottoms.size());
     auto coming = edges.begin();
@@ -276,7 +282,7 @@ class Laws {
       const Vec2& p = skeleton_.nodes[i].point;
       for (; coming != edges.end() && bottoms[*coming] <= p.y(); ++coming) {
         const int e = static_cast<int>(*coming);
-        crossed.emplace_back(ring_[e], ring_[next(e, size_)]);
+        crossed.emplace_back(ring_[e], ring_[polygon_.next(e)]);
       }
       bool inside = false;
       for (size_t k = 0; k < crossed.size();) {
@@ -316,7 +322,8 @@ class Laws {
   }
 
   const Skeleton& skeleton_;
-  Ring ring_;
+  const Polygon& polygon_;
+  Ring ring_;  // the vertices of all rings
   std::vector<EdgeLine> lines_;
   int size_;
   double tolerance_;

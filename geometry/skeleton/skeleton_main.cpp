@@ -15,12 +15,15 @@ void construct(const std::vector<double>& request, const SendNumbers& send) {
   if (take() != kSkeletonRequest) throw std::runtime_error("a request of another version");
   const bool exact = take() != 0;
   while (at < request.size()) {
-    std::vector<Vec2> ring(static_cast<size_t>(take()));
-    for (Vec2& v : ring) {
-      v.x() = take();
-      v.y() = take();
+    Rings polygon(static_cast<size_t>(take()));
+    for (std::vector<Vec2>& ring : polygon) {
+      ring.resize(static_cast<size_t>(take()));
+      for (Vec2& v : ring) {
+        v.x() = take();
+        v.y() = take();
+      }
     }
-    SkeletonMessage message = cgal_skeleton(ring, exact);
+    SkeletonMessage message = cgal_skeleton(polygon, exact);
     message.insert(message.begin(), static_cast<double>(message.size()));
     send(message);
   }

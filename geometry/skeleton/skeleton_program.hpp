@@ -8,11 +8,11 @@
 
 namespace apothem {
 
-/// Begins a request; the numbers behind it are: 1 for exact constructions or 0, then for every ring
-/// the number of its vertices and their coordinates. The answer has for every ring the size of its
-/// SkeletonMessage and the message. It changes with what follows it, so that a helper of another
-/// version refuses the request.
-inline constexpr double kSkeletonRequest = 20261;
+/// Begins a request; the numbers behind it are: 1 for exact constructions or 0, then for every
+/// polygon the number of its rings, and for each of these the number of its vertices and their
+/// coordinates. The answer has for every polygon the size of its SkeletonMessage and the message.
+/// It changes with what follows it, so that a helper of another version refuses the request.
+inline constexpr double kSkeletonRequest = 20262;
 
 /// The path of the helper program: that of the environment variable APOTHEM_SKELETON_PROGRAM, or
 /// the first of these that exists:

@@ -12,7 +12,7 @@ namespace apothem {
 
 /// The first question of straight_skeleton to CGAL, if it begins with one.
 struct FirstQuestion {
-  std::vector<Vec2> ring;
+  Rings rings;     ///< counter-clockwise outside and clockwise around holes
   double seconds;  ///< time limit, s
 };
 std::optional<FirstQuestion> first_question(const Polygon& polygon);

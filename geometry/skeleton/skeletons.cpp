@@ -28,19 +28,19 @@ std::vector<int> mapped_face(const std::vector<int>& face, const Similarity& map
 
 std::vector<SkeletonOrFailure> straight_skeletons(const std::vector<const Polygon*>& polygons,
                                                   int processes, const Progress& progress) {
-  std::vector<std::vector<Vec2>> rings;
+  std::vector<Rings> outlines;
   std::vector<size_t> asked;
   double seconds = 0;
   for (size_t i = 0; i < polygons.size(); ++i) {
     std::optional<FirstQuestion> question = first_question(*polygons[i]);
     if (!question) continue;
     asked.push_back(i);
-    rings.push_back(std::move(question->ring));
+    outlines.push_back(std::move(question->rings));
     seconds = std::max(seconds, question->seconds);
   }
-  const int most = static_cast<int>((rings.size() + kWorthProcess - 1) / kWorthProcess);
+  const int most = static_cast<int>((outlines.size() + kWorthProcess - 1) / kWorthProcess);
   std::vector<CgalAnswer> answers =
-      ask_cgal(rings, false, seconds, std::clamp(processes, 1, std::max(most, 1)), progress);
+      ask_cgal(outlines, false, seconds, std::clamp(processes, 1, std::max(most, 1)), progress);
   std::vector<std::optional<CgalAnswer>> first(polygons.size());
   for (size_t k = 0; k < asked.size(); ++k) first[asked[k]] = std::move(answers[k]);
 
@@ -70,7 +70,7 @@ std::optional<Skeleton> copied_skeleton(const Skeleton& original, const Similari
   for (int e = 0; e < map.vertices; ++e) {
     parts.faces[map.edge(e)] = mapped_face(original.faces[e], map);
   }
-  Skeleton image = assemble(std::move(parts));
+  Skeleton image = assemble(std::move(parts), copy);
   image.exact = original.exact;
   polish(image, copy);
   if (broken_law(image, copy)) return std::nullopt;

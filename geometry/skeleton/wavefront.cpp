@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "geometry/skeleton/event_queue.hpp"
 #include "geometry/skeleton/moving_front.hpp"
 
@@ -27,20 +26,21 @@ class Wavefront {
   Wavefront(const Polygon& polygon, unsigned seed, double movement)
       : polygon_(polygon),
         size_(polygon.size()),
-        triangles_(size_ - 2),
-        queue_(size_ - 2),
+        count_(size_ - 2 + 2 * (polygon.rings() - 1)),
+        triangles_(count_),
+        queue_(count_),
         borders_(size_) {
     const std::vector<Triangle> corners = triangulate(polygon);
     const std::vector<FineVec> points = moved_vertices(polygon, corners, movement, seed);
     for (int e = 0; e < size_; ++e) {
-      front_.add_line(points[e], points[next(e, size_)]);
+      front_.add_line(points[e], points[polygon.next(e)]);
       nodes_.push_back({polygon[e], 0});
     }
     for (int v = 0; v < size_; ++v) {
-      front_.add_vertex(points[v], 0, previous(v, size_), v, v);
+      front_.add_vertex(points[v], 0, polygon.previous(v), v, v);
     }
     connect(corners);
-    for (int t = 0; t < size_ - 2 && sound_; ++t) {
+    for (int t = 0; t < count_ && sound_; ++t) {
       const auto [a, b, c] = triangles_[t].corners;
       if (!(twice_area(points[a], points[b], points[c]) > 0)) sound_ = false;
       schedule(t, 0);
@@ -48,7 +48,7 @@ class Wavefront {
   }
 
   std::optional<SkeletonParts> run(const Progress& progress) {
-    const int total = 2 * size_ - 2;
+    const int total = size_ + count_;
     int report_at = size_;
     while (sound_ && !queue_.empty()) {
       const int t = queue_.first();
@@ -57,18 +57,20 @@ class Wavefront {
       collapse(t);
       if (static_cast<int>(nodes_.size()) >= report_at) {
         const int done = static_cast<int>(nodes_.size()) - size_;
-        if (progress) progress({"straight skeleton", static_cast<double>(done) / (size_ - 2)});
+        if (progress) progress({"straight skeleton", static_cast<double>(done) / count_});
         report_at = static_cast<int>(nodes_.size()) + std::max(1, size_ / 100);
       }
       if (++changes_ > kMostChanges * size_ + kMoreChanges) return std::nullopt;
     }
     if (!sound_ || static_cast<int>(nodes_.size()) != total) return std::nullopt;
-    return joined(std::move(nodes_), borders_);
+    return joined(std::move(nodes_), borders_, polygon_);
   }
 
  private:
   // Finds the neighbours of the triangles.
   void connect(const std::vector<Triangle>& corners) {
+    sound_ = static_cast<int>(corners.size()) == count_;
+    if (!sound_) return;
     struct Side {
       int low, high, triangle, place;
     };
@@ -78,7 +80,7 @@ class Wavefront {
       for (int k = 0; k < 3; ++k) {
         const int a = corners[t][(k + 1) % 3];
         const int b = corners[t][(k + 2) % 3];
-        if (next(a, size_) == b) {
+        if (polygon_.next(a) == b) {
           triangles_[t].sides[k] = ~a;
         } else {
           sides.push_back({std::min(a, b), std::max(a, b), t, k});
@@ -88,7 +90,7 @@ class Wavefront {
     std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
       return std::pair(p.low, p.high) < std::pair(q.low, q.high);
     });
-    sound_ = static_cast<int>(corners.size()) == size_ - 2 && sides.size() % 2 == 0;
+    sound_ = sides.size() % 2 == 0;
     for (size_t i = 0; sound_ && i < sides.size(); i += 2) {
       const Side &p = sides[i], &q = sides[i + 1];
       sound_ = p.low == q.low && p.high == q.high;
@@ -271,6 +273,7 @@ class Wavefront {
 
   const Polygon& polygon_;
   int size_;
+  int count_;          // of triangles, and of the nodes inside
   bool sound_ = true;  // false once something has happened that cannot be
   Real now_;
   double changes_ = 0;

@@ -153,7 +153,7 @@ void ContactTerm::refuse_engulfed(const State& state) const {
   OutlineSurfaces outlines;
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     const Potential& potential = model_.bodies[i].potential;
-    outlines.add_rigid(potential.vertices, i, 1 / potential.steepest);
+    outlines.add_rigid(potential.rings(), i, 1 / potential.steepest);
   }
   for (const DeformableBody& body : model_.deformables) {
     outlines.add_mesh(body.mesh, boundary(body.mesh), body.first_node);

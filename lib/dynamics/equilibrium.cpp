@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/elementary.hpp"
@@ -70,11 +71,12 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   }
   for (const RigidBody& body : model.bodies) {
     double radius = 0, longest = 0;
-    const std::vector<Vec2>& vertices = body.potential.vertices;
-    for (size_t i = 0; i < vertices.size(); ++i) {
-      radius = std::max(radius, vertices[i].norm());
-      longest = std::max(longest, (vertices[body.next(i)] - vertices[i]).norm());
-      scene.include(body.position + vertices[i]);
+    const Potential& shape = body.potential;
+    for (int i = 0; i < shape.size(); ++i) {
+      const Vec2& vertex = shape.vertices[i];
+      radius = std::max(radius, vertex.norm());
+      longest = std::max(longest, (shape.vertices[shape.next(i)] - vertex).norm());
+      scene.include(body.position + vertex);
     }
     radius_.push_back(radius);
     least_.push_back(kLeast * kMass * 2 * model.stiffness() * body.potential.steepest * longest);

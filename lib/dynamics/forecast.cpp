@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/mesh/measure.hpp"
 #include "lib/model/inradius.hpp"
@@ -88,8 +89,9 @@ class Blocks {
     std::vector<Vec2> points;
     for (size_t i = 0; i < v.size(); ++i) {
       radius = std::max(radius, v[i].norm());
-      const Vec2 next = v[body.next(i)] - v[i];
-      const Vec2 last = v[body.previous(i)] - v[i];
+      const int vertex = static_cast<int>(i);
+      const Vec2 next = v[body.potential.next(vertex)] - v[i];
+      const Vec2 last = v[body.potential.previous(vertex)] - v[i];
       b.breadth = std::max(b.breadth, next.norm());
       const double sine = cross(next, last), whole = next.norm() * last.norm();
       if (sine > 0) b.tangent = std::min(b.tangent, sine / (whole + next.dot(last)));

@@ -165,23 +165,12 @@ std::vector<Landing> undominated(std::vector<Landing> all) {
   return best;
 }
 
-void add_edges(const std::vector<Vec2>& ring, const std::array<double, 3>& inverse_mass,
-               std::vector<Landing>& all) {
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2& p = ring[i];
-    const Vec2& q = after(ring, i);
-    const double length = (q - p).norm();
-    const Vec2 along = (q - p) / length;
-    const double arm = along.dot((p + q) / 2);
-    all.push_back(landing_of(length, length, arm, -cross(along, p), 1, inverse_mass));
-  }
-}
-
 }  // namespace
 
 std::vector<Landing> landings(const RigidBody& body, double compliant_energy) {
-  const Rings rings = body.rings();
-  const std::vector<Vec2> ring = bends(rings[0]);
+  Rings rings = body.potential.rings();
+  for (std::vector<Vec2>& each : rings) each = bends(each);
+  const std::vector<Vec2>& ring = rings.front();
   const std::vector<Vec2> hull = convex_hull(ring);
   const std::array<double, 3> inverse_mass = body.inverse_mass();
   double extent = 0;
@@ -192,9 +181,18 @@ std::vector<Landing> landings(const RigidBody& body, double compliant_energy) {
     const double depth = std::min(cap.depth_of(compliant_energy, extent), body.inradius);
     all.push_back(cap.landing(depth, inverse_mass));
   }
-  // Edges in notches and holes, which meet the corners of a partner.
-  if (hull.size() < ring.size()) add_edges(ring, inverse_mass, all);
-  for (size_t k = 1; k < rings.size(); ++k) add_edges(bends(rings[k]), inverse_mass, all);
+  // Edges in notches and in holes, which meet the corners of a partner.
+  if (hull.size() == ring.size()) rings.erase(rings.begin());
+  for (const std::vector<Vec2>& inner : rings) {
+    for (size_t i = 0; i < inner.size(); ++i) {
+      const Vec2& p = inner[i];
+      const Vec2& q = after(inner, i);
+      const double length = (q - p).norm();
+      const Vec2 along = (q - p) / length;
+      const double arm = along.dot((p + q) / 2);
+      all.push_back(landing_of(length, length, arm, -cross(along, p), 1, inverse_mass));
+    }
+  }
   return undominated(std::move(all));
 }
 

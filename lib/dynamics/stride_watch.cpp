@@ -129,8 +129,9 @@ bool StrideWatch::meets(const Step& step, BodyIndex mover, BodyIndex target) con
     const PlacedPotential polygon = step.before.shapes().view(target);
     const Vec2 place = step.before.reference(target);
     for (int k = 0; k < polygon.size; ++k) {
+      const int end = polygon.end(k);
       if (crosses(box, place + Vec2(polygon.x[k], polygon.y[k]),
-                  place + Vec2(polygon.x[k + 1], polygon.y[k + 1]))) {
+                  place + Vec2(polygon.x[end], polygon.y[end]))) {
         return true;
       }
     }
@@ -222,8 +223,8 @@ std::optional<StrideWatch::Fault> StrideWatch::look(const State& state, const Su
 
 StrideWatch::Middle StrideWatch::middle_of(BodyIndex body) const {
   if (is_rigid(body)) {
-    const Rings rings = model_.bodies[static_cast<size_t>(body)].rings();
-    const Polygon polygon(rings[0], {rings.begin() + 1, rings.end()});
+    const Rings rings = model_.bodies[static_cast<size_t>(body)].potential.rings();
+    const Polygon polygon(rings.front(), {rings.begin() + 1, rings.end()});
     return {polygon.origin() + largest_inscribed_circle(polygon).centres.front(), {}};
   }
   const DeformableBody& mesh_body = model_.deformables[static_cast<size_t>(body - rigid_count_)];
@@ -275,8 +276,8 @@ bool StrideWatch::contains(const State& state, const Surfaces& now, BodyIndex bo
     const PlacedPotential polygon = now.shapes().view(body);
     const Vec2 place = now.reference(body);
     for (int k = 0; k < polygon.size; ++k) {
-      pass(place + Vec2(polygon.x[k], polygon.y[k]),
-           place + Vec2(polygon.x[k + 1], polygon.y[k + 1]));
+      const int end = polygon.end(k);
+      pass(place + Vec2(polygon.x[k], polygon.y[k]), place + Vec2(polygon.x[end], polygon.y[end]));
     }
     return inside;
   }

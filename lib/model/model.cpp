@@ -23,32 +23,6 @@ std::vector<MaterialIndex> DeformableBody::materials() const {
   return all;
 }
 
-namespace {
-
-const RingLinks* links_of(const Potential& potential) {
-  return potential.links ? &*potential.links : nullptr;
-}
-
-}  // namespace
-
-size_t RigidBody::next(size_t i) const {
-  return static_cast<size_t>(
-      apothem::next(links_of(potential), static_cast<int>(i), potential.size()));
-}
-
-size_t RigidBody::previous(size_t i) const {
-  return static_cast<size_t>(
-      apothem::previous(links_of(potential), static_cast<int>(i), potential.size()));
-}
-
-Rings RigidBody::rings() const {
-  Rings rings;
-  const auto first = potential.vertices.begin();
-  for_each_ring(links_of(potential), potential.size(),
-                [&](int start, int end) { rings.emplace_back(first + start, first + end); });
-  return rings;
-}
-
 double RigidBody::reach() const {
   double reach = 0;
   for (const Vec2& v : potential.vertices) reach = std::max(reach, (v - pivot).norm());

@@ -122,13 +122,13 @@ class Drawing {
     for (Ring& ring : outline) {
       for (Vec2& p : ring) p -= picture_.polygon.origin();
     }
-    fill(outline, bands.colours[0]);
-    std::vector<std::vector<Ring>> levels;
+    canvas_.fill_even_odd(place(outline), bands.colours[0]);
+    std::vector<Rings> levels;
     for (size_t i = 1; i < bands.colours.size(); ++i) {
-      levels.push_back(singular_area(picture_.skeleton, bands.bounds[i] * r).polygons);
-      fill(levels.back(), bands.colours[i]);
+      levels.push_back(rings_of(singular_area(picture_.skeleton, bands.bounds[i] * r).polygons));
+      canvas_.fill_even_odd(place(levels.back()), bands.colours[i]);
     }
-    fill(picture_.singular.polygons, viridis(1));
+    canvas_.fill_even_odd(place(rings_of(picture_.singular.polygons)), viridis(1));
     for (size_t i = kBandsPerLine; i < bands.colours.size(); i += kBandsPerLine) {
       for (const Ring& ring : levels[i - 1]) canvas_.stroke(place(ring), true, kContour);
     }
@@ -143,18 +143,11 @@ class Drawing {
   }
 
  private:
-  // Of a polygon with holes the levels have holes as well.
-  void fill(const Rings& rings, const Colour& colour) {
-    if (!picture_.polygon.has_holes()) {
-      for (const Ring& ring : rings) canvas_.fill(place(ring), colour);
-      return;
-    }
-    Rings placed;
-    for (const Ring& ring : rings) placed.push_back(place(ring));
-    canvas_.fill_even_odd(placed, colour);
-  }
-
   [[nodiscard]] Ring place(const Ring& ring) const { return axes_(view_(ring)); }
+  [[nodiscard]] Rings place(Rings rings) const {
+    for (Ring& ring : rings) ring = place(ring);
+    return rings;
+  }
   [[nodiscard]] Vec2 place(const Vec2& point) const { return axes_(view_(point)); }
 
   void draw_faces() {
@@ -175,7 +168,7 @@ class Drawing {
   }
 
   void draw_singular_area() {
-    for (const Ring& ring : picture_.singular.polygons)
+    for (const Ring& ring : rings_of(picture_.singular.polygons))
       canvas_.stroke(place(ring), true, kSingular);
     for (const auto& [a, b] : picture_.singular.segments) {
       canvas_.stroke({place(a), place(b)}, false, {kRed, 3.5});

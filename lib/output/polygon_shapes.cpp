@@ -13,41 +13,12 @@ std::vector<Vec2> in_world(const Polygon& polygon, std::vector<Vec2> points) {
   for (Vec2& p : points) p += polygon.origin();
   return points;
 }
-
-Rings in_world(const Polygon& polygon, const PolygonWithHoles& part) {
-  Rings rings = rings_of(part);
+Rings in_world(const Polygon& polygon, Rings rings) {
   for (std::vector<Vec2>& ring : rings) ring = in_world(polygon, std::move(ring));
   return rings;
 }
 
-// Rings may touch each other in vertices.
-bool is_around(const std::vector<Vec2>& outer, const std::vector<Vec2>& inner) {
-  for (const Vec2& v : inner) {
-    if (const int side = side_of_ring(outer, v)) return side > 0;
-  }
-  return false;
-}
-
 }  // namespace
-
-std::vector<PolygonWithHoles> polygons_of(const Rings& rings) {
-  std::vector<PolygonWithHoles> polygons;
-  for (const std::vector<Vec2>& ring : rings) {
-    if (ring_area(ring) > 0) polygons.push_back({ring, {}});
-  }
-  for (const std::vector<Vec2>& ring : rings) {
-    if (ring_area(ring) > 0) continue;
-    PolygonWithHoles* innermost = nullptr;
-    for (PolygonWithHoles& polygon : polygons) {
-      if (!is_around(polygon.outer, ring)) continue;
-      if (!innermost || ring_area(polygon.outer) < ring_area(innermost->outer)) {
-        innermost = &polygon;
-      }
-    }
-    if (innermost) innermost->holes.push_back(ring);
-  }
-  return polygons;
-}
 
 std::vector<Shape> skeleton_shapes(const Polygon& polygon, const Skeleton& skeleton) {
   std::vector<Shape> shapes;
@@ -84,16 +55,16 @@ std::vector<Shape> face_shapes(const Polygon& polygon, const Skeleton& skeleton)
 
 std::vector<Shape> offset_shapes(const Polygon& polygon, const Skeleton& skeleton, double depth) {
   std::vector<Shape> shapes;
-  for (const PolygonWithHoles& part : polygons_of(singular_area(skeleton, depth).polygons)) {
-    shapes.push_back({Shape::Kind::polygon, in_world(polygon, part), {{"depth", depth}}});
+  for (const PolygonWithHoles& part : singular_area(skeleton, depth).polygons) {
+    shapes.push_back({Shape::Kind::polygon, in_world(polygon, rings_of(part)), {{"depth", depth}}});
   }
   return shapes;
 }
 
 std::vector<Shape> singular_shapes(const Polygon& polygon, const SingularArea& singular) {
   std::vector<Shape> shapes;
-  for (const PolygonWithHoles& part : polygons_of(singular.polygons)) {
-    shapes.push_back({Shape::Kind::polygon, in_world(polygon, part)});
+  for (const PolygonWithHoles& part : singular.polygons) {
+    shapes.push_back({Shape::Kind::polygon, in_world(polygon, rings_of(part))});
   }
   for (const std::array<Vec2, 2>& ends : singular.segments) {
     shapes.push_back({Shape::Kind::line, {in_world(polygon, {ends[0], ends[1]})}});

@@ -11,10 +11,6 @@
 
 namespace apothem {
 
-/// Rings that do not cross each other as polygons: a clockwise one is a hole of the
-/// counter-clockwise one that is the innermost around it.
-std::vector<PolygonWithHoles> polygons_of(const Rings& rings);
-
 /// The inner arcs of the straight skeleton as lines: `left_edge` and `right_edge`, the edges on
 /// whose faces the arc lies; `start_height` and `end_height`, the roof at its ends, m.
 std::vector<Shape> skeleton_shapes(const Polygon& polygon, const Skeleton& skeleton);

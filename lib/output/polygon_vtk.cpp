@@ -10,7 +10,6 @@
 
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
-#include "lib/output/polygon_shapes.hpp"
 #include "lib/output/vtk_grid.hpp"
 
 namespace apothem {
@@ -68,7 +67,7 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
       grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
     }
   };
-  for (const PolygonWithHoles& part : polygons_of(singular.polygons)) {
+  for (const PolygonWithHoles& part : singular.polygons) {
     const Rings rings = rings_of(part);
     std::vector<Vec2> corners;
     for (const std::vector<Vec2>& ring : rings) {

@@ -81,7 +81,7 @@ void draw_circles(Canvas& canvas, const Axes& axes, const InscribedCircle& circl
 }
 
 void draw_singular(Canvas& canvas, const Axes& axes, const SingularArea& singular) {
-  for (const Ring& ring : singular.polygons) canvas.stroke(axes(ring), true, kSingular);
+  for (const Ring& ring : rings_of(singular.polygons)) canvas.stroke(axes(ring), true, kSingular);
   for (const auto& [a, b] : singular.segments)
     canvas.stroke({axes(a), axes(b)}, false, {kRed, 3.5});
   for (const Vec2& p : singular.points) canvas.circle(axes(p), 4, kRed, {{1, 1, 1}, .8});

@@ -156,7 +156,10 @@ PotentialMap potential_map(const Polygon& polygon, MapKind kind, const Potential
                                                                     : skeleton.roof_height;
   map.singular = singular_area(skeleton, map.reference);
   const auto place = [&](Vec2& p) { p += polygon.origin(); };
-  for (Ring& ring : map.singular->polygons) std::ranges::for_each(ring, place);
+  for (PolygonWithHoles& part : map.singular->polygons) {
+    std::ranges::for_each(part.outer, place);
+    for (Ring& hole : part.holes) std::ranges::for_each(hole, place);
+  }
   for (auto& ends : map.singular->segments) std::ranges::for_each(ends, place);
   std::ranges::for_each(map.singular->points, place);
   std::ranges::for_each(map.circle->centres, place);

@@ -14,7 +14,6 @@
 #include "lib/output/field_picture.hpp"
 #include "lib/output/field_raster.hpp"
 #include "lib/output/frames.hpp"
-#include "lib/output/polygon_shapes.hpp"
 #include "lib/output/run_folder.hpp"
 #include "lib/output/run_picture.hpp"
 #include "lib/player/shapes.hpp"
@@ -196,22 +195,6 @@ TEST_CASE("the player has the rings of bodies with holes", "[player][holes]") {
   CHECK(area == Approx(moments.area).epsilon(1e-14));
   CHECK(first.norm() < 1e-12);  // about the centroid of what is left of the plate
   CHECK(shapes.bodies[1].holes.empty());
-}
-
-TEST_CASE("rings are grouped to polygons by their sense", "[output][holes]") {
-  const auto square = [](double from, double to, bool clockwise) {
-    Ring ring{{from, from}, {to, from}, {to, to}, {from, to}};
-    if (clockwise) std::reverse(ring.begin(), ring.end());
-    return ring;
-  };
-  const std::vector<PolygonWithHoles> polygons =
-      polygons_of({square(2, 8, true), square(0, 10, false), square(3, 7, false),
-                   square(4, 6, true), square(20, 21, false)});
-  REQUIRE(polygons.size() == 3);
-  CHECK(area_of(polygons[0]) == 100 - 36);
-  CHECK(area_of(polygons[1]) == 16 - 4);
-  CHECK(area_of(polygons[2]) == 1);
-  CHECK(polygons_of({}).empty());
 }
 
 TEST_CASE("cells of rings that touch cover them as well", "[output][holes]") {

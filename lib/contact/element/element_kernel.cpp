@@ -101,7 +101,8 @@ void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) con
   const Vec2 place = surfaces_.reference(i);
   for (int k = 0; k < view.size; ++k) {
     if (!outer(i, k)) continue;
-    boundary.add(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[k + 1], view.y[k + 1]));
+    const int end = view.end(k);
+    boundary.add(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[end], view.y[end]));
   }
 }
 
@@ -399,8 +400,9 @@ void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
       if (!surfaces_.is_rigid(i) && !surfaces_.elements().outer(i - surfaces_.rigid_count(), k)) {
         continue;
       }
+      const int end = view.end(k);
       records.push_back({surfaces_.body(i), place + Vec2(view.x[k], view.y[k]),
-                         place + Vec2(view.x[k + 1], view.y[k + 1])});
+                         place + Vec2(view.x[end], view.y[end])});
     }
   }
   first.push_back(records.size());

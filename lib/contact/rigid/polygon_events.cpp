@@ -226,8 +226,8 @@ void PolygonEvents::find_crossings(const PlacedPotential& x0, const PlacedPotent
       };
       const Vec2 p = p0 + theta * (p1 - p0);
       const Vec2 from(interpolated(y0.x, y1.x, j), interpolated(y0.y, y1.y, j));
-      const Vec2 edge =
-          Vec2(interpolated(y0.x, y1.x, j + 1), interpolated(y0.y, y1.y, j + 1)) - from;
+      const int end = y1.end(j);
+      const Vec2 edge = Vec2(interpolated(y0.x, y1.x, end), interpolated(y0.y, y1.y, end)) - from;
       const double along = edge.dot(p - from) / edge.squaredNorm();
       if (along > -kRound && along < 1 + kRound) kinks.push_back(theta);
     }

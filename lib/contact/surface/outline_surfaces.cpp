@@ -152,12 +152,11 @@ void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeI
   close_body({first, size(), -1, r, reach});
 }
 
-void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid,
-                                double reference) {
+void OutlineSurfaces::add_rigid(const Rings& rings, RigidIndex rigid, double reference) {
   const int first = size();
-  add_loop(vertices, {});
-  double reach = std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2);
-  if (const std::optional<InnerCorner> corner = lowest_inner_corner({vertices}, reach)) {
+  for (const std::vector<Vec2>& ring : rings) add_loop(ring, {});
+  double reach = std::min(reference, smallest_thickness(rings, 2 * reference) / 2);
+  if (const std::optional<InnerCorner> corner = lowest_inner_corner(rings, reach)) {
     reach = corner->height;
   }
   close_body({first, size(), rigid, reference, reach});

@@ -78,7 +78,7 @@ class OutlineSurfaces {
 
   /// Adds the polygon of a rigid body, counter-clockwise and relative to the mass centre, with the
   /// reference length `reference`, m. The depth of the collar is r, or half the smallest thickness.
-  void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
+  void add_rigid(const Rings& rings, RigidIndex rigid, double reference);
 
   /// Moves the outlines with their bodies; those of rigid bodies follow their polygons. The
   /// tangents, bisectors and regular depths of active bodies are computed. Throws NotFinite if a

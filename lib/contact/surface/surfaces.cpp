@@ -32,7 +32,7 @@ void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   rigid_.push_back(rigid);
   rigid_.back().slope = shapes_.slope(i);
   rigid_.back().radius = shapes_.radius(i);
-  if (collars_) outlines_.add_rigid(potential.vertices, i, 1 / potential.steepest);
+  if (collars_) outlines_.add_rigid(potential.rings(), i, 1 / potential.steepest);
 }
 
 void Surfaces::add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,

@@ -255,9 +255,9 @@ TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
   // A given r, and a rigid body: half of its thickness.
   CHECK(depth_of(bar(1, 10, ElementShape::quadrilateral), .2) == .2);
   OutlineSurfaces outlines;
-  outlines.add_rigid(comb, 0, .4);
+  outlines.add_rigid({comb}, 0, .4);
   CHECK(outlines.bodies[0].depth == Approx(.1));
-  outlines.add_rigid(samples::block(0, 0, 4, 1).vertices(), 1, .5);
+  outlines.add_rigid({samples::block(0, 0, 4, 1).vertices()}, 1, .5);
   CHECK(outlines.bodies[1].depth == .5);
 }
 
