@@ -156,7 +156,8 @@ class OutlineMaker {
   // An outline by its rings: the outer one and holes.
   void add_rings(const DrawnShape& shape, Rings rings) {
     try {
-      add_outline(shape, polygon_of(rings), std::move(rings));
+      Polygon polygon = polygon_of(rings);
+      add_outline(shape, std::move(polygon), std::move(rings));
     } catch (const InvalidPolygon& error) {
       refuse(shape,
              fmt::format("{}; correct the drawing there, or say \"repair\": true", error.what()));

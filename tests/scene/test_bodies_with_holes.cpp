@@ -83,9 +83,9 @@ TEST_CASE("mass, centre and inertia of a body are those without its holes", "[sc
   CHECK(body.inertia == Approx(2000 * (whole - hole)).epsilon(1e-14));
   REQUIRE(body.rings().size() == 2);
   CHECK(body.rings()[0].size() == 4);
-  CHECK(body.next(3) == 0);
-  CHECK(body.next(7) == 4);
-  CHECK(body.previous(4) == 7);
+  CHECK(body.potential.next(3) == 0);
+  CHECK(body.potential.next(7) == 4);
+  CHECK(body.potential.previous(4) == 7);
 
   // The sense of a ring says nothing, and a file may have the hole.
   const Scene other = scene_of(square("[ [[1,1],[1,2],[2,2],[2,1]] ]"));

@@ -117,7 +117,7 @@ TEST_CASE("a mesh that cannot be is refused at its place", "[mesh][scene]") {
       {R"({"fill": {"polygon": [[0,0],[4,0],[0,4]], "holes": [[[3,3],[5,3],[5,5]]], "size": 1}})",
        "/fill/holes/0/0: not a usable polygon: hole 0 "},
       {R"({"fill": {"polygon": [[0,0],[9,0],[0,9]], "holes": [[[1,1],[2,1],[3,1]]], "size": 1}})",
-       "/fill/holes/0/2: not a usable polygon: hole 0: vertex 2 is a spike"},
+       "/fill/holes/0/0: not a usable polygon: hole 0: vertex 0 is a spike"},
       {R"({"voronoi": {"polygon": [[0,0],[1,0],[0,1]], "cells": 0}})",
        "/voronoi: the number of cells"},
       {R"({"voronoi": {"size": [1, -1], "cells": 3}})", "/voronoi/size: must be two positive"},
