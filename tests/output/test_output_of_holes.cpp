@@ -155,8 +155,7 @@ TEST_CASE("pictures of bodies leave their holes open", "[picture][holes]") {
       for (int column = 0; column < kWide; ++column) {
         const Vec2 p(window.x0 + (column + .5) / kWide * (window.x1 - window.x0),
                      window.y1 - (row + .5) / kHigh * (window.y1 - window.y0));
-        const bool inside = side_of(there, p) > 0 ||
-                            (p - (Vec2(8.5, .5) + written.model.origin)).cwiseAbs().maxCoeff() < .5;
+        const bool inside = side_of(there, p) > 0 || (p - Vec2(8.5, .5)).cwiseAbs().maxCoeff() < .5;
         const bool painted = pixels[static_cast<size_t>(row) * kWide + column].alpha > 0;
         wrong += painted != inside;
         filled += painted;

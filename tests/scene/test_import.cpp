@@ -565,7 +565,7 @@ TEST_CASE("faulty outlines are left out and counted by choice", "[import]") {
                "LINESTRING (0 9, 1 9, 1 8)\n"
                "POLYGON ((5 0, 6 0, 6 1, 5 1, 5 0))\n"
                "POLYGON ((5 0, 6 0, 6 0.5, 5 0.5, 5 0))\n"
-               "POLYGON ((10 0, 14 0, 14 4, 10 4, 10 0), (11 1, 12 1, 12 2, 11 2, 11 1))\n");
+               "POLYGON ((10 0, 14 0, 14 4, 10 4, 10 0), (10 1, 12 1, 12 2, 11 2, 10 1))\n");
   const Scene scene =
       imported(folder, R"({ "file": "a.wkt", "material": "rock", "faults": "skip" })");
   CHECK(scene.model.bodies.size() == 1);
