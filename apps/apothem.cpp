@@ -38,6 +38,7 @@ Json place(const SceneError& error) {
   if (!error.pointer().empty()) json["pointer"] = error.pointer();
   if (const auto* polygon = dynamic_cast<const PolygonError*>(&error)) {
     if (polygon->vertex() >= 0) json["vertex"] = polygon->vertex();
+    if (polygon->hole()) json["hole"] = *polygon->hole();
   }
   return json;
 }

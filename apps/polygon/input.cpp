@@ -18,14 +18,22 @@ Json ring_json(const std::vector<Vec2>& ring) {
   return list;
 }
 
+Json list_of(const std::vector<std::vector<Vec2>>& rings) {
+  Json list = Json::array();
+  for (const std::vector<Vec2>& ring : rings) list.push_back(ring_json(ring));
+  return list;
+}
+
 }  // namespace
+
+std::string holes_json(const std::vector<std::vector<Vec2>>& holes) {
+  return list_of(holes).dump();
+}
 
 std::string polygons_json(const std::vector<PolygonWithHoles>& polygons) {
   Json list = Json::array();
   for (const PolygonWithHoles& polygon : polygons) {
-    Json holes = Json::array();
-    for (const std::vector<Vec2>& hole : polygon.holes) holes.push_back(ring_json(hole));
-    list.push_back({{"polygon", ring_json(polygon.outer)}, {"holes", std::move(holes)}});
+    list.push_back({{"polygon", ring_json(polygon.outer)}, {"holes", list_of(polygon.holes)}});
   }
   return list.dump();
 }

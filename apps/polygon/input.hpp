@@ -24,6 +24,9 @@ int evaluate_points(const PolygonOptions& options, const PotentialChoice& choice
 /// `apothem polygon --repair`.
 int repair_outlines(const PolygonOptions& options);
 
+/// Rings of holes as the text of JSON: [[[x,y],...], ...].
+std::string holes_json(const std::vector<std::vector<Vec2>>& holes);
+
 /// Polygons with holes as the text of JSON: [{"polygon": [[x,y],...], "holes": [...]}, ...].
 std::string polygons_json(const std::vector<PolygonWithHoles>& polygons);
 

@@ -81,7 +81,7 @@ int evaluate_points(const PolygonOptions& options, const PotentialChoice& choice
     for (const Vec2& point : points) values.push_back(evaluate(point));
   } catch (const InvalidPolygon& error) {
     throw PolygonError(options.file, 0, std::string("the polygon is not usable: ") + error.what(),
-                       error.vertex());
+                       error.vertex(), error.hole());
   }
   fmt::print("{}", options.json ? to_json(points, values).dump(2) + "\n" : to_csv(points, values));
   return exit_code::done;

@@ -110,10 +110,17 @@ Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
   return list;
 }
 
+Rings holes_of(const Polygon& polygon) {
+  Rings rings = rings_of(polygon);
+  rings.erase(rings.begin());
+  return rings;
+}
+
 Json to_json(const Analysis& a) {
   return {{"area", a.moments.area},
           {"centroid", world(a.polygon, a.moments.centroid)},
           {"polar_moment", a.moments.polar},
+          {"holes", Json::parse(holes_json(holes_of(a.polygon)))},
           {"inradius", a.circle.radius},
           {"incircle_centres", world_list(a.polygon, a.circle.centres)},
           {"roof_height", a.skeleton.roof_height},
@@ -150,6 +157,7 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   };
   const bool convex = a.polygon.is_convex();
   row("vertices", fmt::format("{}, {}", a.polygon.size(), convex ? "convex" : "not convex"));
+  if (a.polygon.has_holes()) row("holes", fmt::format("{}", a.polygon.rings() - 1));
   row("area", fmt::format("{} m^2", a.moments.area));
   row("centroid", place(a.polygon, a.moments.centroid) + " m");
   row("polar moment", fmt::format("{} m^4, about the centroid", a.moments.polar));
@@ -203,7 +211,7 @@ Analysis analyse_file(const std::string& file, const PotentialChoice& choice) {
     return analyse(polygon, choice);
   } catch (const InvalidPolygon& error) {
     throw PolygonError(file, 0, std::string("the polygon is not usable: ") + error.what(),
-                       error.vertex());
+                       error.vertex(), error.hole());
   }
 }
 

@@ -29,7 +29,11 @@ std::vector<Vec2> points_of(const Array& points) {
   return list;
 }
 
-Polygon polygon_of(const Array& points) { return Polygon(points_of(points)); }
+Polygon polygon_of(const Array& points, const py::sequence& holes) {
+  Rings rings;
+  for (const py::handle hole : holes) rings.push_back(points_of(hole.cast<Array>()));
+  return {points_of(points), rings};
+}
 
 py::tuple pair(const Vec2& v) { return py::make_tuple(v.x(), v.y()); }
 
@@ -210,7 +214,7 @@ py::array_t<bool> contains(const Polygon& polygon, const Array& array) {
   py::array_t<bool> inside(static_cast<py::ssize_t>(points.size()));
   auto at = inside.mutable_unchecked<1>();
   for (size_t i = 0; i < points.size(); ++i) {
-    at(static_cast<py::ssize_t>(i)) = strictly_inside(polygon.vertices(), points[i]);
+    at(static_cast<py::ssize_t>(i)) = side_of(polygon, points[i]) > 0;
   }
   return inside;
 }
@@ -237,6 +241,7 @@ py::list overlap(const Polygon& a, const Polygon& b) {
   py::list list;
   for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
     list.append(array_of(part.vertices, a.origin()));
+    for (const OverlapRing& hole : part.holes) list.append(array_of(hole.vertices, a.origin()));
   }
   return list;
 }
@@ -266,18 +271,32 @@ void bind_values(py::class_<Polygon>& polygon) {
 }
 
 void bind_polygon(py::module_& module) {
-  py::class_<Polygon> polygon(module, "Polygon", R"(A simple polygon.
+  py::class_<Polygon> polygon(module, "Polygon", R"(A polygon, with or without holes.
 
-Polygon(points)
-    points: array (n, 2) of at least three vertices in either sense, m, without holes. Points that
-    repeat the one before, or at the end the first one, are left out.
+Polygon(points, holes=[])
+    points: array (n, 2) of at least three vertices in either sense, m. Points that repeat the one
+    before, or at the end the first one, are left out.
+    holes: list of such arrays, which lie inside the outline and apart from each other.
 
-Raises SceneError, with the number of the vertex, if the outline crosses or touches itself, or has no
-area.)");
-  polygon.def(py::init(&polygon_of), py::arg("points"))
+Raises SceneError, with the numbers of the vertex and of the hole, if a ring crosses or touches itself
+or another one, or has no area.)");
+  polygon.def(py::init(&polygon_of), py::arg("points"), py::arg("holes") = py::list())
       .def_property_readonly(
-          "points", [](const Polygon& p) { return array_of(p.vertices()); },
-          "Copy (n, 2): vertices, counter-clockwise, m.")
+          "points",
+          [](const Polygon& p) {
+            return array_of({p.outer_ring().begin(), p.outer_ring().end()});
+          },
+          "Copy (n, 2): vertices of the outer ring, counter-clockwise, m.")
+      .def_property_readonly(
+          "holes",
+          [](const Polygon& p) {
+            py::list holes;
+            for (int k = 1; k < p.rings(); ++k) {
+              holes.append(array_of({p.ring(k).begin(), p.ring(k).end()}));
+            }
+            return holes;
+          },
+          "List of copies (k, 2): vertices of the holes, clockwise, m.")
       .def_property_readonly(
           "area", [](const Polygon& p) { return area_moments(p).area; }, "Area, m^2.")
       .def_property_readonly(
@@ -299,10 +318,10 @@ area.)");
       .def("offset", &offset_of, py::arg("d"),
            "The polygon with its sides moved inwards by d, m, along its straight skeleton: a list "
            "of polygons, which may be empty. Raises ValueError unless d > 0.")
-      .def(
-          "contains", &contains, py::arg("points"),
-          "Whether points (k, 2) lie inside and not on the boundary, decided exactly: array (k) of "
-          "bool.")
+      .def("contains", &contains, py::arg("points"),
+           "Whether points (k, 2) lie inside, neither on the boundary nor in a hole, decided "
+           "exactly: "
+           "array (k) of bool.")
       .def("__len__", &Polygon::size);
   bind_values(polygon);
 }
@@ -326,7 +345,8 @@ Raises SceneError if a polygon has no such potential, ValueError for a wrong opt
   module.def(
       "overlap", &overlap, py::arg("a"), py::arg("b"),
       "The components of the overlap of two polygons, exact up to the rounding of their "
-      "vertices: list of arrays (k, 2), m, counter-clockwise. Empty if they do not overlap.");
+      "vertices: list of arrays (k, 2), m, counter-clockwise. Holes of a component follow it, "
+      "clockwise. Empty if they do not overlap.");
   module.def(
       "boolean", &boolean, py::arg("a"), py::arg("b"), py::arg("op"),
       R"(The "union", "intersection" or "difference" (a without b) of two polygons, decided exactly: a

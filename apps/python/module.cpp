@@ -30,13 +30,14 @@ void raise_scene_error(const SceneError& error) {
   const py::object type = py::module_::import("apothem._errors").attr("SceneError");
   raise("SceneError", type(shown.what(), error.reason(), text_or_none(error.file()),
                            number_or_none(shown.line(), 1), text_or_none(error.pointer()),
-                           number_or_none(polygon ? polygon->vertex() : -1, 0)));
+                           number_or_none(polygon ? polygon->vertex() : -1, 0),
+                           number_or_none(polygon ? polygon->hole().value_or(-1) : -1, 0)));
 }
 
-void raise_bad_polygon(const std::string& what, int vertex) {
+void raise_bad_polygon(const std::string& what, int vertex, int hole) {
   const py::object type = py::module_::import("apothem._errors").attr("SceneError");
-  raise("SceneError",
-        type(what, what, py::none(), py::none(), py::none(), number_or_none(vertex, 0)));
+  raise("SceneError", type(what, what, py::none(), py::none(), py::none(),
+                           number_or_none(vertex, 0), number_or_none(hole, 0)));
 }
 
 void translate(std::exception_ptr exception) {
@@ -45,9 +46,9 @@ void translate(std::exception_ptr exception) {
   } catch (const SceneError& error) {
     raise_scene_error(error);
   } catch (const InvalidPolygon& error) {
-    raise_bad_polygon(error.what(), error.vertex());
+    raise_bad_polygon(error.what(), error.vertex(), error.hole().value_or(-1));
   } catch (const SkeletonFailure& error) {
-    raise_bad_polygon(error.what(), -1);
+    raise_bad_polygon(error.what(), -1, -1);
   } catch (const Unstable& error) {
     raise("Unstable", py::str(error.what()));
   } catch (const SystemFailure& error) {

@@ -53,16 +53,36 @@ py::array_t<bool> present(const Bodies& bodies) {
   return array;
 }
 
-py::list outlines(const Bodies& bodies) {
+// The rings of each body where they are now.
+template <class Use>
+void each_body(const Bodies& bodies, const Use& use) {
   const State& state = bodies.run->look().state();
-  py::list list;
   for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
     const auto pose = state.pose(i);
     const double c = std::cos(pose[2]), s = std::sin(pose[2]);
-    std::vector<Vec2> ring = model_of(bodies.run).bodies[static_cast<size_t>(i)].potential.vertices;
-    for (Vec2& v : ring) v = {pose[0] + (c * v.x() - s * v.y()), pose[1] + (s * v.x() + c * v.y())};
-    list.append(array_of(ring));
+    Rings rings = model_of(bodies.run).bodies[static_cast<size_t>(i)].rings();
+    for (std::vector<Vec2>& ring : rings) {
+      for (Vec2& v : ring) {
+        v = {pose[0] + (c * v.x() - s * v.y()), pose[1] + (s * v.x() + c * v.y())};
+      }
+    }
+    use(rings);
   }
+}
+
+py::list outlines(const Bodies& bodies) {
+  py::list list;
+  each_body(bodies, [&](const Rings& rings) { list.append(array_of(rings[0])); });
+  return list;
+}
+
+py::list holes(const Bodies& bodies) {
+  py::list list;
+  each_body(bodies, [&](const Rings& rings) {
+    py::list of_body;
+    for (size_t k = 1; k < rings.size(); ++k) of_body.append(array_of(rings[k]));
+    list.append(of_body);
+  });
   return list;
 }
 
@@ -172,7 +192,11 @@ body that the scene will ever have; `present` says which of them are in the worl
                              "Copy (n,), bool: in the world, neither to come nor gone.")
       .def("outlines", &outlines,
            "List of n new arrays (k, 2): the vertices where they are now, relative to "
-           "Simulation.origin, m, counter-clockwise.")
+           "Simulation.origin, m, counter-clockwise, without those of holes.")
+      .def(
+          "holes", &holes,
+          "List of n lists of new arrays (k, 2): the vertices of the holes of each body where they "
+          "are now, relative to Simulation.origin, m, clockwise.")
       .def("__len__", [](const Bodies& b) { return model_of(b.run).bodies.size(); });
 
   py::class_<Nodes>(module, "Nodes",

@@ -71,8 +71,8 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge);
 
 /// Makes a mesh with random_sites, relax and the function above. Regions with holes are not
-/// supported yet: like the function above, it throws InvalidPolygon for them. Throws as these functions do, and
-/// std::invalid_argument if an option is out of range.
+/// supported yet: like the function above, it throws InvalidPolygon for them. Throws as these
+/// functions do, and std::invalid_argument if an option is out of range.
 VoronoiMesh voronoi_mesh(const Polygon& region, const VoronoiOptions& options);
 
 /// Moves a mesh from coordinates relative to region.origin() to those of the region. The vertices

@@ -68,7 +68,7 @@ class PackingSpace {
   std::vector<size_t> first_{0};  // per ring its first vertex, and the number of all
   std::vector<Box> boxes_;
   std::vector<char> convex_;
-  int fixed_ = 0;  // number of holes and obstacles
+  int fixed_ = 0;               // number of holes and obstacles
   std::vector<Rings> hollows_;  // holes of the obstacles, up to the last one that has any
   std::vector<std::vector<int>> cells_;
   mutable std::vector<int> in_the_way_;      // per solid: what has been in its way last, or -1

@@ -31,6 +31,11 @@ std::int64_t hash_of_cells(const Mesh& mesh) {
 BodyRecord record_of(const RigidBody& body) {
   BodyRecord record{body.name, true, {}, 0};
   append(record.shape, body.potential.vertices);
+  if (body.potential.links) {
+    for (const int start : body.potential.links->starts) {
+      record.cells = 31 * record.cells + start;  // the vertices alone do not tell the rings
+    }
+  }
   return record;
 }
 

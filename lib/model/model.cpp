@@ -23,14 +23,6 @@ std::vector<MaterialIndex> DeformableBody::materials() const {
   return all;
 }
 
-Rings RigidBody::rings() const {
-  Rings rings;
-  const auto first = potential.vertices.begin();
-  for_each_ring(potential.links ? &*potential.links : nullptr, potential.size(),
-                [&](int start, int end) { rings.emplace_back(first + start, first + end); });
-  return rings;
-}
-
 double RigidBody::reach() const {
   double reach = 0;
   for (const Vec2& v : potential.vertices) reach = std::max(reach, (v - pivot).norm());

@@ -44,7 +44,7 @@ struct RigidBody {
 
   [[nodiscard]] bool can_move() const { return motion != Motion::fixed; }
   /// The outer ring, counter-clockwise, and the holes, clockwise, in the body frame, m.
-  [[nodiscard]] Rings rings() const;
+  [[nodiscard]] Rings rings() const { return potential.rings(); }
   /// The largest distance of a vertex from the pivot, m.
   [[nodiscard]] double reach() const;
   /// 1/m, 1/m, 1/I for the degrees of freedom that forces can change, 0 for the others. Contact

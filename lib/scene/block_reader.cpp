@@ -64,8 +64,7 @@ BlockReader::Shape BlockReader::shape(const JsonValue& value) const {
   object.read("weight", shape.weight, &JsonReader::positive, "");
   int kinds = 0;
   if (const JsonValue* v = object.optional("polygon")) {
-    const JsonValue* holes = object.optional("holes");
-    const Polygon polygon = read_polygon(in_, *v, holes);
+    const Polygon polygon = read_polygon(in_, *v, value.find("holes"));
     shape.own_diameter = std::sqrt(area_moments(polygon).area / disc_area(1));
     if (polygon.has_holes()) {
       PolygonWithHoles block = normalised_with_holes(polygon);
@@ -87,6 +86,9 @@ BlockReader::Shape BlockReader::shape(const JsonValue& value) const {
       return ring;
     };
     ++kinds;
+  }
+  if (const JsonValue* v = object.optional("holes"); v && !value.find("polygon")) {
+    in_.fail(*v, "belongs to a \"polygon\"; other shapes have no holes");
   }
   object.finish();
   if (kinds != 1) {

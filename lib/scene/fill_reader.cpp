@@ -339,7 +339,8 @@ class Fill {
     if (!shape.holes.empty()) make_.add(way, "holes", make_.rings(shape.holes));
     const bool cells = element_->kind == ElementKind::polygon;
     if (cells) {
-      const double count = std::max(1., std::round(ring_area(shape.outer) / (mesh_size_ * mesh_size_)));
+      const double count =
+          std::max(1., std::round(ring_area(shape.outer) / (mesh_size_ * mesh_size_)));
       make_.add(way, "cells", make_.number(count));
       make_.add(way, "seed", make_.number(static_cast<double>(number)));
     } else {

@@ -156,7 +156,8 @@ class OutlineMaker {
   // An outline by its rings: the outer one and holes.
   void add_rings(const DrawnShape& shape, Rings rings) {
     try {
-      add_outline(shape, polygon_of(rings), std::move(rings));
+      Polygon polygon = polygon_of(rings);
+      add_outline(shape, std::move(polygon), std::move(rings));
     } catch (const InvalidPolygon& error) {
       refuse(shape,
              fmt::format("{}; correct the drawing there, or say \"repair\": true", error.what()));
@@ -338,11 +339,11 @@ class OutlineMaker {
       if (rules_.skip_faults && covered_.count(pair.first)) continue;
       const bool whole = shared > kSame * smaller && first.layer == second.layer;
       const bool apart = unless_faulty(shape_of(second), [&] {
-        refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
-                                   "move them apart, or leave a layer out{}",
-                                   100 * shared / smaller, shown_place(first.place, first.layer),
-                                   whole ? "; say \"holes\": \"nested\" if the inner one is a hole"
-                                         : ""));
+        refuse(second,
+               fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
+                           "move them apart, or leave a layer out{}",
+                           100 * shared / smaller, shown_place(first.place, first.layer),
+                           whole ? "; say \"holes\": \"nested\" if the inner one is a hole" : ""));
       });
       if (apart || !covered_.insert(pair.second).second) continue;
       uncount(second.entity);

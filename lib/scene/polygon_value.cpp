@@ -90,8 +90,8 @@ Polygon read_polygon_without_holes(const JsonReader& in, const JsonValue& outlin
 
 void refuse_polygon(const JsonReader& in, const JsonValue& outline, const InvalidPolygon& error,
                     const JsonValue* holes) {
-  const bool is_hole = holes && error.hole() &&
-                       *error.hole() < static_cast<int>(holes->items().size());
+  const bool is_hole =
+      holes && error.hole() && *error.hole() < static_cast<int>(holes->items().size());
   const JsonValue& ring = is_hole ? holes->items()[*error.hole()] : outline;
   const bool inside = ring.type() == JsonValue::Type::array && error.vertex() >= 0 &&
                       error.vertex() < static_cast<int>(ring.items().size());

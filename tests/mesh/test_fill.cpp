@@ -102,6 +102,24 @@ TEST_CASE("even sizes and shapes where there is room", "[mesh]") {
   CHECK(std::sqrt(q.area / q.quadrilaterals) == Approx(size).epsilon(.1));
 }
 
+TEST_CASE("a polygon is meshed as its outline and its holes are", "[mesh][holes]") {
+  const std::vector<Vec2> outline{{0, 0}, {0, 4}, {6, 4}, {6, 0}};  // clockwise
+  const Rings holes{{{1, 1}, {2, 1}, {2, 2}}, {{4, 1}, {4, 2}, {5, 2}}};
+  for (const ElementShape shape : {ElementShape::triangle, ElementShape::quadrilateral}) {
+    const Mesh whole = fill_mesh(Polygon(outline, holes), .4, shape);
+    const Mesh parts =
+        fill_mesh(Polygon(outline), {Polygon(holes[0]), Polygon(holes[1])}, .4, shape);
+    CHECK(whole.nodes == parts.nodes);
+    CHECK(whole.corners == parts.corners);
+    REQUIRE(whole.groups.size() == parts.groups.size());
+    for (size_t i = 0; i < whole.groups.size(); ++i) {
+      CHECK(whole.groups[i].name == parts.groups[i].name);
+      CHECK(whole.groups[i].nodes == parts.groups[i].nodes);
+    }
+    check_laws(whole, 23, 2, 1e-12);
+  }
+}
+
 TEST_CASE("polygons with holes", "[mesh]") {
   const Polygon outline = samples::block(0, 0, 4, 3);
   const std::vector<Polygon> holes{samples::shifted(samples::regular(12), {1.2, 1.5}),

@@ -35,6 +35,49 @@ class Polygons(FolderCase):
         self.assertEqual(apothem.Polygon([[0, 0], [4, 0], [4, 1], [0, 1]]).singular_area().kind,
                          "segment")
 
+    def test_holes(self):
+        holes = [square(1, 1, 1), square(3, 2, 1)[::-1]]
+        plate = apothem.Polygon([[0, 0], [5, 0], [5, 4], [0, 4]], holes)
+        self.assertEqual(plate.area, 18)
+        self.assertEqual(plate.points.tolist(), [[0, 0], [5, 0], [5, 4], [0, 4]])
+        clockwise = [[[1, 1], [1, 2], [2, 2], [2, 1]], [[3, 3], [4, 3], [4, 2], [3, 2]]]
+        self.assertEqual([{tuple(v) for v in hole.tolist()} for hole in plate.holes],
+                         [{tuple(v) for v in hole} for hole in clockwise])
+        for hole in plate.holes:
+            x, y = hole.T
+            self.assertLess(sum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1)), 0)
+        numpy.testing.assert_allclose(plate.centroid, [2.5, 2], rtol=1e-15)
+        self.assertFalse(plate.is_convex)
+        self.assertEqual(apothem.Polygon(square(0, 0, 1)).holes, [])
+        points = [[0.5, 0.5], [1.5, 1.5], [1, 1.5], [3.5, 2.5], [2.5, 2], [9, 9]]
+        self.assertEqual(plate.contains(points).tolist(), [True, False, False, False, True, False])
+        # What lies in the hole does not touch the plate; what is larger overlaps it all around.
+        self.assertEqual(apothem.overlap(plate, apothem.Polygon(square(1.25, 1.25, 0.5))), [])
+        [ring, hole] = apothem.overlap(plate, apothem.Polygon(square(0.75, 0.75, 1.5)))
+        self.assertEqual({tuple(v) for v in hole.tolist()}, {tuple(v) for v in clockwise[0]})
+        [frame] = apothem.boolean(plate, apothem.Polygon(square(3, 2, 1)), "union")
+        self.assertEqual(len(frame.holes), 1)
+        with self.assertRaises(apothem.SceneError) as caught:
+            apothem.Polygon(square(0, 0, 4), [square(1, 1, 1), square(2.5, 2.5, 2)])
+        self.assertEqual(caught.exception.hole, 1)
+        with self.assertRaises(apothem.SceneError) as caught:
+            apothem.Polygon(square(0, 0, 4), [[[1, 1], [2, 2], [2, 1], [1, 2]]])
+        self.assertEqual((caught.exception.hole, caught.exception.vertex), (0, 2))
+
+    def test_contact_in_a_hole(self):
+        ring = apothem.Polygon(square(0, 0, 4), [square(1, 1, 2)])
+        inside = apothem.Polygon(square(0.75, 1.5, 1))  # 0.25 deep in the left wall of the hole
+        found = apothem.contact(ring, inside)
+        self.assertAlmostEqual(found.overlap_area, 0.25, 14)
+        self.assertLess(found.force[0], 0)
+        self.assertAlmostEqual(found.force[1], 0, 14)
+        self.assertAlmostEqual(found.penetration, 0.25, 14)
+        self.assertEqual(apothem.contact(ring, apothem.Polygon(square(1.5, 1.5, 1))).force, (0, 0))
+        [part] = ring.offset(0.25)
+        self.assertAlmostEqual(part.area, 3.5 ** 2 - 2.5 ** 2, 14)
+        self.assertEqual(len(part.holes), 1)
+        self.assertEqual(ring.inscribed_circle().radius > 0.5, True)  # in a corner
+
     def test_numbers_are_those_of_the_program(self):
         file = SOURCE / "data/polygons/boulder.json"
         expected = program("polygon", file, "--reference", 0.62)

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "lib/run/hash.hpp"
 #include "lib/run/start.hpp"
@@ -105,6 +106,14 @@ std::string scene_with(const std::string& imports) {
 
 Scene imported(const Folder& folder, const std::string& imports) {
   return read_scene(folder.write("scene.json", scene_with(imports)));
+}
+
+// The same with the distance to the boundary as the depth.
+Scene imported_distance(const Folder& folder, const std::string& imports) {
+  std::string text = scene_with(imports);
+  const std::string contact = "\"normal_stiffness\": 20e9";
+  text.insert(text.find(contact), R"("field": "distance", "reference": 0.1, )");
+  return read_scene(folder.write("scene.json", text));
 }
 
 std::string error_of(const Folder& folder, const std::string& imports) {
@@ -556,7 +565,7 @@ TEST_CASE("faulty outlines are left out and counted by choice", "[import]") {
                "LINESTRING (0 9, 1 9, 1 8)\n"
                "POLYGON ((5 0, 6 0, 6 1, 5 1, 5 0))\n"
                "POLYGON ((5 0, 6 0, 6 0.5, 5 0.5, 5 0))\n"
-               "POLYGON ((10 0, 14 0, 14 4, 10 4, 10 0), (11 1, 12 1, 12 2, 11 2, 11 1))\n");
+               "POLYGON ((10 0, 14 0, 14 4, 10 4, 10 0), (10 1, 12 1, 12 2, 11 2, 10 1))\n");
   const Scene scene =
       imported(folder, R"({ "file": "a.wkt", "material": "rock", "faults": "skip" })");
   CHECK(scene.model.bodies.size() == 1);
@@ -671,6 +680,73 @@ TEST_CASE("bodies with a mesh may be drawn with holes", "[import]") {
   }
 }
 
+TEST_CASE("rigid bodies have the holes of the drawing", "[import][holes]") {
+  const Folder folder;
+  // A solid inside of a hole is a body of its own.
+  folder.write("a.wkt",
+               "POLYGON ((0 0, 4 0, 4 4, 0 4), (1 1, 1 3, 3 3, 3 1))\n"
+               "POLYGON ((1.5 1.5, 2.5 1.5, 2.5 2.5, 1.5 2.5))");
+  const Scene scene = imported_distance(folder, R"({ "file": "a.wkt", "material": "rock" })");
+  REQUIRE(scene.model.bodies.size() == 2);
+  CHECK(scene.model.bodies[0].rings().size() == 2);
+  CHECK(scene.model.bodies[0].area == 12);
+  CHECK(scene.model.bodies[0].mass == Approx(24000).epsilon(1e-14));
+  CHECK(scene.model.bodies[0].inertia == Approx(2000 * (16 * 32. - 4 * 8.) / 12).epsilon(1e-14));
+  CHECK(scene.model.bodies[1].area == 1);
+  // The same from GeoJSON, and with a line that crosses itself into a frame.
+  folder.write("a.geojson", R"({"type": "Polygon", "coordinates": [[[0,0],[4,0],[4,4],[0,4],[0,0]],
+    [[1,1],[1,3],[3,3],[3,1],[1,1]]]})");
+  const Scene json =
+      imported_distance(folder, R"({ "file": "a.geojson", "scale": 1, "material": "rock" })");
+  REQUIRE(json.model.bodies.size() == 1);
+  CHECK(json.model.bodies[0].potential.vertices == scene.model.bodies[0].potential.vertices);
+  CHECK(scene_hash(json) != scene_hash(scene));
+}
+
+TEST_CASE("repaired outlines keep their holes", "[import][holes]") {
+  const Folder folder;
+  // The hole is drawn twice over itself, and the outline has a spike.
+  folder.write("a.wkt",
+               "POLYGON ((0 0, 4 0, 4 4, 6 6, 4 4, 0 4), (1 1, 1 3, 2 3, 2 5, 2 3, 3 3, 3 1))");
+  const Scene scene =
+      imported_distance(folder, R"({ "file": "a.wkt", "material": "rock", "repair": true })");
+  REQUIRE(scene.model.bodies.size() == 1);
+  CHECK(scene.model.bodies[0].rings().size() == 2);
+  CHECK(scene.model.bodies[0].area == Approx(12).epsilon(1e-15));
+}
+
+TEST_CASE("outlines inside of each other are holes by turns if the import says so",
+          "[import][holes]") {
+  const Folder folder;
+  const auto square = [](const char* layer, const char* from, const char* to) {
+    return polyline(layer, {{from, from}, {to, from}, {to, to}, {from, to}});
+  };
+  // From outside: a ring, a ring in its hole, and in the hole of that a solid on another layer.
+  folder.write("a.dxf", dxf(square("steel", "2", "8") + " " + square("steel", "0", "10") + " " +
+                            square("rubber", "4.5", "5.5") + " " + square("steel", "3", "7") + " " +
+                            square("steel", "4", "6")));
+  const std::string plain = R"({ "file": "a.dxf", "material": "rock", "scale": 1)";
+  CHECK_THAT(error_of(folder, plain + " }"), Catch::Contains("covers 100 %"));
+  const Scene scene = imported_distance(folder, plain + R"(, "holes": "nested" })");
+  REQUIRE(scene.model.bodies.size() == 3);
+  std::multiset<double> areas;
+  for (const RigidBody& body : scene.model.bodies) areas.insert(body.area);
+  CHECK(areas == std::multiset<double>{1, 16 - 4, 100 - 36});
+  CHECK(scene.model.bodies[0].rings().size() == 2);
+  CHECK(scene.model.bodies[1].rings().size() == 1);
+  CHECK(scene.model.bodies[2].rings().size() == 2);
+  REQUIRE(scene.imports.size() == 1);
+  CHECK(scene.imports[0].bodies == 3);
+  CHECK_THAT(error_of(folder, plain + R"(, "holes": "neted" })"),
+             Catch::Contains("did you mean \"nested\"?"));
+
+  // A hole that crosses its outline is faulty, and with it the outline.
+  folder.write("a.dxf", dxf(square("steel", "0", "10") + " " +
+                            polyline("steel", {{"1", "1"}, {"11", "1"}, {"2", "2"}}) + " " +
+                            square("steel", "20", "21")));
+  CHECK_THAT(error_of(folder, plain + R"(, "holes": "nested" })"), Catch::Contains("covers"));
+}
+
 TEST_CASE("what cannot be imported is refused with its place and a remedy", "[import]") {
   const Folder folder;
   folder.write("wall.dxf", wall_as("dxf"));
@@ -705,9 +781,17 @@ TEST_CASE("what cannot be imported is refused with its place and a remedy", "[im
       {"a.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n", "", {"a.dxf: is not valid DXF"}},
       {"a.dxf", "PK\003", "", {"a.dxf: is not valid DXF"}},
       {"a.wkt",
-       "POLYGON ((0 0, 4 0, 4 4, 0 4), (1 1, 1 3, 3 3, 3 1))",
+       "POLYGON ((0 0, 4 0, 4 4, 0 4), (1 1, 1 3, 5 3, 3 1))",
        "",
-       {"a.wkt: line 1: has a hole", "\"mesh\""}},
+       {"a.wkt: line 1: hole 0 crosses or touches the outer ring", "correct the drawing"}},
+      {"a.wkt",
+       "POLYGON ((0 0, 4 0, 4 4, 0 4))\nPOLYGON ((1 1, 1 3, 3 3, 3 1))",
+       "",
+       {"a.wkt: line 2: covers 100 % of line 1", "say \"holes\": \"nested\" if the inner one is"}},
+      {"a.wkt",
+       "POLYGON ((0 0, 9 0, 9 9, 0 9))\nPOLYGON ((1 1, 1 8, 8 8, 8 1), (2 2, 3 2, 2 3))",
+       R"(, "holes": "nested")",
+       {"a.wkt: line 2: lies inside of line 1 and has a hole itself"}},
       {"a.wkt",
        "\nPOLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))",
        "",

@@ -115,7 +115,9 @@ TEST_CASE("a mesh that cannot be is refused at its place", "[mesh][scene]") {
        "/fill/polygon/2: not a usable polygon"},
       {R"({"fill": {"file": "none.json", "size": 1}})", "/fill/file: "},
       {R"({"fill": {"polygon": [[0,0],[4,0],[0,4]], "holes": [[[3,3],[5,3],[5,5]]], "size": 1}})",
-       "/fill: hole 0 lies outside"},
+       "/fill/holes/0/0: not a usable polygon: hole 0 "},
+      {R"({"fill": {"polygon": [[0,0],[9,0],[0,9]], "holes": [[[1,1],[2,1],[3,1]]], "size": 1}})",
+       "/fill/holes/0/0: not a usable polygon: hole 0: vertex 0 is a spike"},
       {R"({"voronoi": {"polygon": [[0,0],[1,0],[0,1]], "cells": 0}})",
        "/voronoi: the number of cells"},
       {R"({"voronoi": {"size": [1, -1], "cells": 3}})", "/voronoi/size: must be two positive"},
@@ -133,6 +135,21 @@ TEST_CASE("a mesh that cannot be is refused at its place", "[mesh][scene]") {
     CHECK_THAT(error, Contains(message));
     CHECK_THAT(error, Contains("scene.json:1"));
   }
+}
+
+TEST_CASE("a file with holes is filled around them", "[mesh][scene][holes]") {
+  const Folder folder;
+  folder.write("a.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 4), (1 1, 2 1, 2 2, 1 2))");
+  const std::string scene = folder / "scene.json";
+  const std::string fill = R"({"fill": {"file": "a.wkt", "size": 0.5, )";
+  check_laws(read(fill + R"("holes": []}})", scene).mesh, 15, 1);
+  const Mesh mesh = read(fill + R"("holes": [[[3,3],[3.5,3],[3,3.5]]]}})", scene).mesh;
+  check_laws(mesh, 15 - .125, 2);
+  CHECK(std::ranges::count(mesh.groups, "hole-1", &MeshGroup::name) == 1);
+  CHECK_THROWS_WITH(
+      read(R"({"voronoi": {"file": "a.wkt", "cells": 3}})", scene),
+      Contains(
+          "/voronoi/file: the polygon has holes; Voronoi cells around holes are not supported"));
 }
 
 TEST_CASE("only polygon elements may be quadrilaterals that are not convex", "[mesh][scene]") {

@@ -119,12 +119,14 @@ TEST_CASE("one ring, in every notation, with and without its closing vertex", "[
   };
   for (const std::string& text : cases) {
     INFO(text);
-    const RingText read = read_polygon_file(folder.write("ring", text));
-    CHECK(read.ring == kTriangle);
-    CHECK(read.lines.size() >= 3);
+    const PolygonText read = read_polygon_file(folder.write("ring", text));
+    CHECK(read.outer.ring == kTriangle);
+    CHECK(read.outer.lines.size() >= 3);
+    CHECK(read.holes.empty());
   }
-  CHECK(read_polygon_file(folder.write("ring", "POLYGON((0 0,\n1.5 0,\n\n0.25 1e-3))")).lines ==
-        std::vector<int>{1, 2, 4});
+  CHECK(
+      read_polygon_file(folder.write("ring", "POLYGON((0 0,\n1.5 0,\n\n0.25 1e-3))")).outer.lines ==
+      std::vector<int>{1, 2, 4});
   std::istringstream line(" 4 0 0 1.5 0 0.25 1e-3 0 0\r");
   CHECK(read_ring(line) == kTriangle);
   CHECK_NOTHROW(require_end(line));
@@ -148,7 +150,14 @@ TEST_CASE("text that is not the polygon it seems to be is refused", "[scene][tex
            {"POLYGON((0 0 5, 1 0 5, 0 1 5))", 1, 0, "has 3 coordinates"},
            {"POLYGON EMPTY", 1, -1, "EMPTY; give it three vertices"},
            {"MULTIPOLYGON EMPTY", 1, -1, "EMPTY; give it three vertices"},
-           {"POLYGON((0 0, 4 0, 4 4, 0 4),\n(3 1, 3 2, 2 1))", 1, -1, "has a hole"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4),\n(3 1, 3 2, 2))", 2, 2, "hole 0, vertex 2 has one"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4), 3 1)", 1, -1, "here stands \"3\" where it needs the ("},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4), (3 1, 3 2, 2 1)", 1, -1, "where it needs the second )"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4), (3 1, 3 2, 2 1", 1, 2, "the text ends behind hole 0, v"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4),\n(3 1, 3 2, 2 1), (1 1,\n2 1))", 3, 1,
+            "hole 1: has 2 ver"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4),\n(3 1, 5 2, 2 1))", 2, 0, "hole 0 crosses or touches"},
+           {"POLYGON((0 0, 4 0, 4 4, 0 4),\n(5 1, 6 2, 5 2))", 2, 0, "outside of the outer ring"},
            {"MULTIPOLYGON(((0 0, 1 0, 0 1)),\n((5 0, 6 0, 5 1)))", 2, -1, "holds 2 polygons"},
            {"POLYGON((0 0, 1 0, 0 1))\nPOLYGON((5 0, 6 0, 5 1))", 2, -1, "more than one polygon"},
            {"POLYGON((0 0, 1 0, 0 1)) or so", 1, -1, "behind the polygon: \"or\""},
@@ -166,6 +175,41 @@ TEST_CASE("text that is not the polygon it seems to be is refused", "[scene][tex
            {"", 0, -1, "is empty"},
            {" \r\n", 0, -1, "is empty"}}) {
     check_refused(folder, "bad.wkt", bad);
+  }
+}
+
+TEST_CASE("holes are read from every notation", "[scene][text]") {
+  const Folder folder;
+  const std::vector<std::string> cases{
+      R"({"polygon": [[0,0],[4,0],[4,4],[0,4]], "holes": [[[1,1],[2,1],[1,2]], [[3,3],[3,2],[2,3]]]})",
+      R"({"type": "Polygon", "coordinates": [[[0,0],[4,0],[4,4],[0,4],[0,0]],
+          [[1,1],[2,1],[1,2],[1,1]], [[3,3],[3,2],[2,3],[3,3]]]})",
+      R"({"type": "MultiPolygon", "coordinates": [[[[0,0],[4,0],[4,4],[0,4]],
+          [[1,1],[2,1],[1,2]], [[3,3],[3,2],[2,3]]]]})",
+      "POLYGON((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 1 2, 1 1), (3 3, 3 2, 2 3, 3 3))",
+      "POLYGON ((0 0,4 0,4 4,0 4)\n,\n(1 1,2 1,1 2),(3 3,3 2,2 3));",
+      "MULTIPOLYGON (((0 0, 4 0, 4 4, 0 4), (1 1, 2 1, 1 2), (3 3, 3 2, 2 3)))"};
+  for (const std::string& text : cases) {
+    INFO(text);
+    const Polygon polygon = polygon_of_file(folder.write("holed", text));
+    const Rings rings = rings_of(polygon);
+    REQUIRE(rings.size() == 3);
+    CHECK(rings[0] == std::vector<Vec2>{{0, 0}, {4, 0}, {4, 4}, {0, 4}});
+    CHECK(rings[1] == std::vector<Vec2>{{1, 1}, {1, 2}, {2, 1}});  // clockwise
+    CHECK(rings[2] == std::vector<Vec2>{{3, 3}, {3, 2}, {2, 3}});
+    CHECK(area_moments(polygon).area == 15);
+  }
+  // The error knows the hole and the line of its vertex.
+  const std::string file = folder.write("bad",
+                                        "POLYGON((0 0, 4 0, 4 4, 0 4),\n(1 1, 2 1, 1 2),\n"
+                                        "(3 3,\n3 2,\n2 3,\n2.2 2.5))");
+  try {
+    polygon_of_file(file);
+    FAIL("is accepted");
+  } catch (const PolygonError& error) {
+    CHECK(error.hole() == 1);
+    CHECK(error.vertex() == 3);
+    CHECK(error.line() == 6);
   }
 }
 
@@ -190,8 +234,11 @@ TEST_CASE("JSON that is not the polygon it seems to be is refused", "[scene][tex
            {R"({"type": "Polygon", "coordinates": []})", 1, -1, "is empty"},
            {R"({"type": "Polygon", "coordinates": [[[0,0,1],[1,0,1],[0,1,1]]]})", 1, -1,
             "has 3 coordinates"},
-           {R"({"type": "Polygon", "coordinates": [)" + ring + ",\n" + ring + "]}", 2, -1,
-            "has a hole"},
+           {R"({"type": "Polygon", "coordinates": [)" + ring + ",\n" + ring + "]}", 2, 0,
+            "hole 0 crosses or touches the outer ring"},
+           {"{\"polygon\": " + ring + ",\n\"holes\": [[[0.1,0.1],[0.2,0.1],[0.1]]]}", 2, -1,
+            "must be [x, y] in m"},
+           {"{\"polygon\": " + ring + ",\n\"holes\": " + ring + "}", 2, -1, "must be [x, y] in m"},
            {R"({"type": "MultiPolygon", "coordinates": [[)" + ring + "],[" + ring + "]]}", 1, -1,
             "holds 2 polygons; give one"},
            {R"({"type": "FeatureCollection", "features": []})", 1, -1, "holds 0 features"},

@@ -72,7 +72,7 @@ class SingularArea(NamedTuple):
     area: of the polygons, m^2.
     points: array (k, 2) of isolated points, m.
     segments: list of arrays (2, 2) of ends, m.
-    polygons: list of arrays (k, 2) of vertices, m.
+    polygons: list of arrays (k, 2) of vertices, m. Holes of a part follow it, clockwise.
     """
 
     kind: str

@@ -35,6 +35,38 @@ TEST_CASE("boolean writes WKT on standard output, or a file", "[program][boolean
   CHECK(run({"boolean", b, a, "difference"}, folder).out == "GEOMETRYCOLLECTION EMPTY\n");
 }
 
+TEST_CASE("polygons with holes are written, read back and combined", "[program][boolean][holes]") {
+  const Folder folder;
+  const std::string a = folder.write("a.json", kSquare), b = folder.write("b.wkt", kInner);
+  for (const char* name : {"frame.wkt", "frame.geojson"}) {
+    INFO(name);
+    const std::string frame = folder / name;
+    REQUIRE(run({"boolean", a, b, "difference", "-o", frame}, folder).code == 0);
+    CHECK(area_moments(polygon_of_file(frame)).area == 12);
+    // The hole closes, and nothing of the inner square is in the frame.
+    CHECK(run({"boolean", frame, b, "union"}, folder).err ==
+          "union: 1 polygon with 0 holes, 16 m^2\n");
+    CHECK(run({"boolean", frame, b, "intersection"}, folder).out == "GEOMETRYCOLLECTION EMPTY\n");
+    const Json json = Json::parse(run({"boolean", a, frame, "difference", "--json"}, folder).out);
+    CHECK(json["area"] == 4);
+    CHECK(json["polygons"][0]["holes"].empty());
+    // A square over a side of the hole: the overlap is what lies outside of it.
+    const std::string c = folder.write("c.json", "[[2,2],[3.5,2],[3.5,2.5],[2,2.5]]");
+    const Result contact = run({"contact", frame, c, "--method", "all", "--json", "--output",
+                                "overlap", "-o", folder / "overlap.wkt"},
+                               folder);
+    INFO(contact.err);
+    REQUIRE(contact.code == 0);
+    CHECK(content(folder / "overlap.wkt") == "POLYGON ((3 2.5, 3 2, 3.5 2, 3.5 2.5, 3 2.5))\n");
+    for (const Json& result : Json::parse(contact.out)["results"]) {
+      INFO(result["method"]);
+      CHECK(double(result["overlap_area"]) == Approx(.25).epsilon(1e-14));
+      CHECK(double(result["force"][0]) > 0);
+      CHECK(std::abs(double(result["force"][1])) < 1e-14);
+    }
+  }
+}
+
 TEST_CASE("what is written is read back to the same bits", "[program][boolean]") {
   const Folder folder;
   const std::string a = folder.write("a.json", kSquare), b = folder.write("b.json", kTriangle);

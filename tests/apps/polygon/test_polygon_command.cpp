@@ -319,3 +319,47 @@ TEST_CASE("pictures and VTK files are complete or not there", "[program][polygon
     CHECK(!std::filesystem::exists(folder / name));
   }
 }
+
+TEST_CASE("polygon describes a polygon with holes", "[program][polygon][holes]") {
+  const Folder folder;
+  const std::string file = folder.write(
+      "a.wkt", "POLYGON ((0 0, 6 0, 6 4, 0 4), (1 1, 2 1, 2 3, 1 3), (4 1, 5 1, 5 3))");
+  const Result r = run({"polygon", file, "--json", "--picture", folder / "a.svg", "--vtk",
+                        folder / "vtk", "--output", "offset:0.25", "-o", folder / "o.geojson"},
+                       folder);
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  const Json o = Json::parse(r.out);
+  CHECK(o["area"] == 24 - 2 - 1);
+  REQUIRE(o["holes"].size() == 2);
+  CHECK(o["holes"][0] == Json::parse("[[1,1],[1,3],[2,3],[2,1]]"));
+  CHECK(o["holes"][1] == Json::parse("[[4,1],[5,3],[5,1]]"));
+  // A face over each edge, numbered ring by ring, that tile the polygon.
+  REQUIRE(o["faces"].size() == 11);
+  for (int e = 0; e < 11; ++e) CHECK(o["faces"][e]["edge"] == e);
+  CHECK(faces_area(o) == Approx(21).epsilon(1e-13));
+  CHECK(std::filesystem::file_size(folder / "a.svg") > 1000);
+  CHECK(std::filesystem::exists(folder / "vtk/faces.vtu"));
+  const Json offset = Json::parse(content(folder / "o.geojson"))["features"];
+  REQUIRE(offset.size() == 1);
+  CHECK(offset[0]["geometry"]["coordinates"].size() == 3);
+  CHECK(run({"polygon", file}, folder).out.find("holes             2\n") != std::string::npos);
+  CHECK(Json::parse(run({"polygon", folder.write("q.json", kQuad), "--json"}, folder).out)["holes"]
+            .empty());
+
+  // Points in a hole are outside.
+  const Json at = Json::parse(run({"polygon", file, "--at", "1.5,2", "--json"}, folder).out);
+  CHECK(at["points"][0]["side"] == "outside");
+  CHECK(at["points"][0]["phi"] == 0);
+  CHECK(at["points"][0]["signed_distance"] == .5);
+
+  // A wrong hole is named.
+  const std::string bad = folder.write(
+      "bad.wkt", "POLYGON ((0 0, 6 0, 6 4, 0 4), (1 1, 2 1, 2 3),\n(4 1, 5 3, 5 1,\n4 3))");
+  const Result refused = run({"polygon", bad, "--json"}, folder);
+  CHECK(refused.code == 2);
+  const Json error = Json::parse(refused.out);
+  CHECK(error["hole"] == 1);
+  CHECK(error["vertex"] == 2);
+  CHECK(error["line"] == 2);
+}
