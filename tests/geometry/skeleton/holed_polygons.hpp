@@ -7,12 +7,13 @@
 
 namespace apothem::test {
 
-/// Adds up to `count` holes, which `draw` proposes, to a ring. Those that touch another ring are
-/// left out.
+/// Adds up to `count` holes, which `draw` proposes, and at least one to a ring. Those that touch
+/// another ring are left out.
 template <class Draw>
 Polygon with_holes(const TiedRing& outer, int count, const Draw& draw) {
   Rings holes;
-  for (int tries = 0; tries < 40 * count && static_cast<int>(holes.size()) < count; ++tries) {
+  for (int tries = 0;
+       static_cast<int>(holes.size()) < count && (tries < 40 * count || holes.empty()); ++tries) {
     holes.push_back(draw());
     try {
       const Polygon polygon(outer, holes);
@@ -69,32 +70,33 @@ inline Rings outlines_of_cells(const std::set<std::array<int, 2>>& cells) {
   return rings;
 }
 
-/// A union of cells with at least `holes` holes: a block of up to `most` cells in each direction,
-/// with cells taken out of it.
+/// A block of cells, up to `most` in each direction, with `holes` holes or more, and with other
+/// cells taken out of it where that makes no rings touch.
 inline Rings random_cells_with_holes(Random& random, int most, int holes) {
   const int width = random.integer(2 * holes + 1, most), height = random.integer(3, most);
-  while (true) {
-    std::set<std::array<int, 2>> cells;
-    for (int x = 0; x < width; ++x) {
-      for (int y = 0; y < height; ++y) cells.insert({x, y});
-    }
-    for (int i = 0; i < 2 * holes + 2; ++i) {
-      std::set<std::array<int, 2>> fewer = cells;
-      std::array<int, 2> cell{random.integer(0, width - 1), random.integer(0, height - 1)};
-      for (int length = random.integer(1, 4); length > 0; --length) {
-        fewer.erase(cell);
-        cell[random.integer(0, 1)] += random.integer(0, 1) ? 1 : -1;
-      }
-      const Rings rings = outlines_of_cells(fewer);
-      // In one piece: a second one would be another counter-clockwise ring.
-      if (!rings.empty() && std::all_of(rings.begin() + 1, rings.end(),
-                                        [](const TiedRing& ring) { return ring_area(ring) < 0; })) {
-        cells = fewer;
-      }
-    }
-    Rings rings = outlines_of_cells(cells);
-    if (static_cast<int>(rings.size()) > holes && ring_area(rings[0]) > 0) return rings;
+  std::set<std::array<int, 2>> cells;
+  for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < height; ++y) cells.insert({x, y});
   }
+  for (int k = 0; k < holes; ++k) cells.erase({2 * k + 1, random.integer(1, height - 2)});
+  Rings rings = outlines_of_cells(cells);
+  for (int i = random.integer(0, 8); i > 0; --i) {
+    std::set<std::array<int, 2>> fewer = cells;
+    std::array<int, 2> cell{random.integer(0, width - 1), random.integer(0, height - 1)};
+    for (int length = random.integer(1, 4); length > 0; --length) {
+      fewer.erase(cell);
+      cell[random.integer(0, 1)] += random.integer(0, 1) ? 1 : -1;
+    }
+    Rings others = outlines_of_cells(fewer);
+    // A second piece would be another counter-clockwise ring.
+    if (static_cast<int>(others.size()) > holes &&
+        std::all_of(others.begin() + 1, others.end(),
+                    [](const TiedRing& ring) { return ring_area(ring) < 0; })) {
+      cells = fewer;
+      rings = std::move(others);
+    }
+  }
+  return rings;
 }
 
 inline Polygon polygon_of(const Rings& rings) {
