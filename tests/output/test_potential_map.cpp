@@ -91,7 +91,7 @@ TEST_CASE("a plateau is the singular area", "[potential_map]") {
   CHECK(map.singular->area() == Approx(1.1 * .5).epsilon(1e-14));
   CHECK(phi_at(map, {.8, .4}) == 1);
   CHECK(phi_at(map, {.8, .1}) == Approx(.4).epsilon(1e-14));
-  CHECK(map.singular->polygons.at(0).at(0).x() > 0);  // in the polygon's own coordinates
+  CHECK(map.singular->polygons.at(0).outer.at(0).x() > 0);  // in the polygon's own coordinates
 }
 
 TEST_CASE("potentials of shapes that they are not made for are refused", "[potential_map]") {

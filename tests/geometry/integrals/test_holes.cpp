@@ -7,8 +7,6 @@
 #include "geometry/exact/exact_integral.hpp"
 #include "geometry/exact/overlap.hpp"
 #include "geometry/integrals/penetration.hpp"
-#include "geometry/polygon/boundary_inside.hpp"
-#include "geometry/polygon/canonical_pose.hpp"
 #include "geometry/potential/point_values.hpp"
 #include "geometry/regions/boolean.hpp"
 #include "tests/geometry/patches.hpp"
@@ -24,16 +22,16 @@ constexpr double kPi = 3.14159265358979323846;
 using Field = PotentialChoice::Field;
 using Reference = PotentialChoice::Reference;
 
-PotentialChoice choice_of(Field field) {
+PotentialChoice own_reference(Field field) {
   return {.field = field,
           .reference = field == Field::roof ? Reference::roof : Reference::inscribed_circle};
 }
 
 // A polygon with holes and another one, with or without, that overlaps it.
-struct Pair {
+struct HoledPair {
   Polygon a, b;
 };
-Pair random_pair(Random& random) {
+HoledPair random_pair(Random& random) {
   const auto one = [&](int most) {
     const int holes = random.integer(0, most);
     const Polygon shape = holes > 0                   ? samples::random_holed(random, holes)
@@ -89,10 +87,10 @@ double sampled(const Polygon& a, const Polygon& b, int count, const F& f) {
 }  // namespace
 
 TEST_CASE("edge method, exact overlap and 100 digits agree about polygons with holes") {
-  SeededRandom random(20);
-  for (int i = 0; i < scaled(400); ++i) {
-    const Pair pair = random_pair(random);
-    const PotentialChoice choice = choice_of(i % 2 == 0 ? Field::roof : Field::distance);
+  test::SeededRandom random(20);
+  for (int i = 0; i < test::scaled(400); ++i) {
+    const HoledPair pair = random_pair(random);
+    const PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
     const PairResult edge =
         edge_method(pair.a, make_potential(pair.a, choice), pair.b, make_potential(pair.b, choice));
     CAPTURE(i, edge.integral.weight, pair.a.rings(), pair.b.rings());
@@ -103,11 +101,11 @@ TEST_CASE("edge method, exact overlap and 100 digits agree about polygons with h
 }
 
 TEST_CASE("the force on a polygon with holes is minus the gradient of the energy") {
-  SeededRandom random(21);
+  test::SeededRandom random(21);
   constexpr double kStep = 1e-5;
-  for (int i = 0; i < scaled(200); ++i) {
-    const Pair pair = random_pair(random);
-    const PotentialChoice choice = choice_of(i % 2 == 0 ? Field::roof : Field::distance);
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const HoledPair pair = random_pair(random);
+    const PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
     CAPTURE(i, pair.a.rings(), pair.b.rings());
     const PairIntegral force = test::edge(pair.a, pair.b, choice).integral;
     const auto energy = [&](const Polygon& a) {
@@ -127,10 +125,10 @@ TEST_CASE("the force on a polygon with holes is minus the gradient of the energy
 }
 
 TEST_CASE("the energy of polygons with holes is the integral of their potentials") {
-  SeededRandom random(22);
-  for (int i = 0; i < scaled(40); ++i) {
-    const Pair pair = random_pair(random);
-    const PotentialChoice choice = choice_of(i % 2 == 0 ? Field::roof : Field::distance);
+  test::SeededRandom random(22);
+  for (int i = 0; i < test::scaled(40); ++i) {
+    const HoledPair pair = random_pair(random);
+    const PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
     const Potential potential_a = make_potential(pair.a, choice);
     const Potential potential_b = make_potential(pair.b, choice);
     const PointEvaluator phi_a(pair.a, potential_a), phi_b(pair.b, potential_b);
@@ -143,10 +141,10 @@ TEST_CASE("the energy of polygons with holes is the integral of their potentials
 }
 
 TEST_CASE("swapped polygons with holes have opposite forces, bit for bit") {
-  SeededRandom random(23);
-  for (int i = 0; i < scaled(200); ++i) {
-    const Pair pair = random_pair(random);
-    const PotentialChoice choice = choice_of(i % 2 == 0 ? Field::roof : Field::distance);
+  test::SeededRandom random(23);
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const HoledPair pair = random_pair(random);
+    const PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
     const PairIntegral ab = test::edge(pair.a, pair.b, choice).integral;
     const PairIntegral ba = test::edge(pair.b, pair.a, choice).integral;
     CHECK(ab.force == -ba.force);
@@ -156,11 +154,11 @@ TEST_CASE("swapped polygons with holes have opposite forces, bit for bit") {
 }
 
 TEST_CASE("the patches of polygons with holes are the components of their overlap") {
-  SeededRandom random(24);
+  test::SeededRandom random(24);
   int several = 0, with_holes = 0;
-  for (int i = 0; i < scaled(300); ++i) {
-    const Pair pair = random_pair(random);
-    const PotentialChoice choice = choice_of(i % 2 == 0 ? Field::roof : Field::distance);
+  for (int i = 0; i < test::scaled(300); ++i) {
+    const HoledPair pair = random_pair(random);
+    const PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
     const Potential potential_a = make_potential(pair.a, choice);
     const Potential potential_b = make_potential(pair.b, choice);
     CAPTURE(i, pair.a.rings(), pair.b.rings());
@@ -188,12 +186,12 @@ TEST_CASE("the patches of polygons with holes are the components of their overla
 }
 
 TEST_CASE("the overlap of polygons with holes is that of Boolean operations") {
-  SeededRandom random(25);
-  for (int i = 0; i < scaled(200); ++i) {
-    const Pair pair = random_pair(random);
+  test::SeededRandom random(25);
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const HoledPair pair = random_pair(random);
     const double area = area_of(
         boolean_operation(rings_of(pair.a), rings_of(pair.b), BooleanOperation::intersection));
-    const PairResult edge = test::edge(pair.a, pair.b, choice_of(Field::distance));
+    const PairResult edge = test::edge(pair.a, pair.b, own_reference(Field::distance));
     CHECK(edge.volume.overlap_area == Approx(area).margin(1e-12));
   }
 }
@@ -202,7 +200,7 @@ TEST_CASE("a bar in the hole of a frame touches nothing until it reaches a side"
   const Polygon ring = frame(.25);
   for (const Field field : {Field::roof, Field::distance}) {
     const auto at = [&](double x) {
-      return test::edge(ring, samples::block(x - .2, -.3, x + .2, .3), choice_of(field));
+      return test::edge(ring, samples::block(x - .2, -.3, x + .2, .3), own_reference(field));
     };
     CHECK(at(0).integral.weight == 0);
     CHECK(at(.5).integral.weight == 0);
