@@ -77,6 +77,9 @@ constexpr int kWavefrontAttempts = 3;
 // Polygons with more vertices than this are not constructed exactly, which takes n^2 steps.
 constexpr int kMostExact = 10000;
 
+// Round-off of a construction without moved vertices, as a movement of them.
+constexpr double kConstruction = 1e-13;
+
 struct Attempt {
   double jitter;  // largest movement of a vertex, as a share of the polygon's size
   bool exact;     // whether CGAL uses exact constructions
@@ -162,6 +165,7 @@ class Search {
  private:
   bool try_convex() {
     found_ = assemble(shrink_convex(polygon_), polygon_);
+    movement_ = kConstruction;
     return passes() && settled();
   }
 
@@ -171,6 +175,7 @@ class Search {
     std::optional<SkeletonParts> parts = trace_wavefront(*frame_.outline, attempt + 1, progress_);
     if (!parts) return fail("the wavefront was not traced to its end");
     found_ = assemble(std::move(*parts), polygon_);
+    movement_ = kWavefrontMovement;
     return corrected();
   }
 
@@ -185,6 +190,7 @@ class Search {
     if (!answer.parts) return fail(answer.failure);
     found_ = assemble(std::move(*answer.parts), polygon_);
     found_.exact = attempt.exact;
+    movement_ = std::max(attempt.jitter, kConstruction);
     return corrected();
   }
 
@@ -200,7 +206,7 @@ class Search {
   // found is kept.
   bool settled() {
     Skeleton found = found_;
-    if (!has_near_ties(found_, polygon_) && place_exactly(found_, polygon_) &&
+    if (!has_near_ties(found_, polygon_, movement_) && place_exactly(found_, polygon_) &&
         !broken_law(found_, polygon_)) {
       return true;
     }
@@ -234,6 +240,7 @@ class Search {
   Rings rings_;  // in the frame's coordinates
   std::optional<CgalAnswer> first_answer_;
   unsigned seed_ = 0;
+  double movement_ = 0;  // of the vertices when found_ was made, as a share of the polygon's size
   std::vector<std::string> failures_;
   Skeleton found_;
 };

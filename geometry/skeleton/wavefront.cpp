@@ -12,10 +12,6 @@ namespace {
 using Real = DoubleDouble;
 
 constexpr int kNone = -1;
-// Largest movement of a vertex, as a share of the polygon's size. A vertex between two edges that
-// are parallel but for a movement d has the speed 1 / d, and its place has the error 1e-32 / d,
-// which has to be much smaller than d.
-constexpr double kMovement = 0x1p-46;
 // The construction is given up after so many changes of triangles per vertex and in addition. Usual
 // polygons need 10 to 30 per vertex.
 constexpr double kMostChanges = 500;
@@ -289,7 +285,7 @@ class Wavefront {
 
 std::optional<SkeletonParts> trace_wavefront(const Polygon& polygon, unsigned seed,
                                              const Progress& progress) {
-  return Wavefront(polygon, seed, kMovement).run(progress);
+  return Wavefront(polygon, seed, kWavefrontMovement).run(progress);
 }
 
 }  // namespace apothem

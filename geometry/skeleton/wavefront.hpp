@@ -16,6 +16,11 @@
 
 namespace apothem {
 
+/// Largest movement of a vertex, as a share of the polygon's size. A vertex between two edges that
+/// are parallel but for a movement d has the speed 1 / d, and its place has the error 1e-32 / d,
+/// which has to be much smaller than d.
+inline constexpr double kWavefrontMovement = 0x1p-46;
+
 /// Returns the nodes and faces of the polygon's skeleton, with positions in the coordinates of the
 /// polygon's vertices, or nothing if the front got into a state that is not possible. The polygon
 /// should lie around the origin and have a size of about 1. The seed chooses the directions in
