@@ -1,6 +1,7 @@
 // The wavefront of a polygon in rational numbers, by brute force: every event is found by trying
 // every vertex on every edge, and after every event the border of what is left is found by cutting
-// every edge at every vertex on it. Edges need normals of rational length.
+// every edge at every vertex on it. Edges need normals of rational length. The loops of a polygon
+// with holes move together, because an event may join them.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -8,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "geometry/polygon/polygon.hpp"
@@ -21,22 +23,24 @@ class ExactWavefront {
   using Node = std::tuple<Rational, Rational, Rational>;  // x, y and time
 
   explicit ExactWavefront(const Polygon& polygon) : faces_(polygon.size()) {
-    const int n = polygon.size();
-    Loop loop;
-    for (int e = 0; e < n; ++e) {
+    Loops loops;
+    for (int e = 0; e < polygon.size(); ++e) {
       const Vec2 side = polygon.after(e) - polygon[e];
       const double length = side.norm();  // whole
       tangents_.push_back({Rational(side.x()) / length, Rational(side.y()) / length});
       const Point start{polygon[e].x(), polygon[e].y()};
       offsets_.push_back(normal(e, start));
-      loop.push_back({e, start});
-      add_node(start, 0, {e, (e + n - 1) % n});
+      loops.pieces.push_back({e, start});
+      loops.next.push_back(polygon.next(e));
+      loops.previous.push_back(polygon.previous(e));
+      add_node(start, 0, {e, polygon.previous(e)});
     }
-    loops_.emplace_back(loop, 0);
-    while (!loops_.empty()) {
-      const auto [pieces, time] = loops_.back();
-      loops_.pop_back();
-      advance(pieces, time);
+    together_ = polygon.has_holes();
+    fronts_.emplace_back(loops, 0);
+    while (!fronts_.empty()) {
+      const auto [front, time] = fronts_.back();
+      fronts_.pop_back();
+      advance(front, time);
     }
   }
 
@@ -48,7 +52,11 @@ class ExactWavefront {
     int edge;
     Point start;
   };
-  using Loop = std::vector<Piece>;
+  // What moves on its own: one loop or several, with the neighbours of their pieces.
+  struct Loops {
+    std::vector<Piece> pieces;
+    std::vector<size_t> next, previous;
+  };
   using Parts = std::map<std::pair<Point, Point>, int>;  // by their ends: the edges they lie on
 
   [[nodiscard]] Rational along(int e, const Point& p) const {
@@ -60,9 +68,9 @@ class ExactWavefront {
   void add_node(const Point& p, const Rational& time, const std::set<int>& edges) {
     for (const int e : edges) faces_[e].insert({p.first, p.second, time});
   }
-  [[nodiscard]] Point speed(const Loop& loop, size_t i) const {
-    const auto& [px, py] = tangents_[loop[(i + loop.size() - 1) % loop.size()].edge];
-    const auto& [qx, qy] = tangents_[loop[i].edge];
+  [[nodiscard]] Point speed(const Loops& loops, size_t i) const {
+    const auto& [px, py] = tangents_[loops.pieces[loops.previous[i]].edge];
+    const auto& [qx, qy] = tangents_[loops.pieces[i].edge];
     const Rational nx = -py - qy, ny = px + qx, half = (nx * nx + ny * ny) / 2;
     return {nx / half, ny / half};
   }
@@ -74,8 +82,9 @@ class ExactWavefront {
   }
 
   // The first time after `now` at which a piece vanishes or a vertex is on another piece.
-  [[nodiscard]] Rational first_event(const Loop& loop, const std::vector<Point>& speeds,
+  [[nodiscard]] Rational first_event(const Loops& loops, const std::vector<Point>& speeds,
                                      const Rational& now) const {
+    const std::vector<Piece>& loop = loops.pieces;
     const size_t m = loop.size();
     Rational first = -1;
     const auto offer = [&](const Rational& step) {
@@ -83,7 +92,7 @@ class ExactWavefront {
     };
     for (size_t i = 0; i < m; ++i) {
       const int e = loop[i].edge;
-      const size_t j = (i + 1) % m;
+      const size_t j = loops.next[i];
       const Rational rate = along(e, difference(speeds[j], speeds[i]));
       if (rate < 0) offer(-along(e, difference(loop[j].start, loop[i].start)) / rate);
       for (size_t k = 0; k < m; ++k) {
@@ -102,11 +111,12 @@ class ExactWavefront {
     return first;
   }
 
-  void advance(const Loop& loop, const Rational& now) {
+  void advance(const Loops& loops, const Rational& now) {
+    const std::vector<Piece>& loop = loops.pieces;
     const size_t m = loop.size();
     std::vector<Point> speeds, places;
-    for (size_t i = 0; i < m; ++i) speeds.push_back(speed(loop, i));
-    const Rational step = first_event(loop, speeds, now);
+    for (size_t i = 0; i < m; ++i) speeds.push_back(speed(loops, i));
+    const Rational step = first_event(loops, speeds, now);
     if (step < 0) throw std::logic_error("a loop has no event");
     for (size_t i = 0; i < m; ++i) places.push_back(moved(loop[i].start, speeds[i], step));
     Parts parts;
@@ -114,7 +124,7 @@ class ExactWavefront {
     std::map<Point, int> vertices_at;
     std::set<Point> changed;
     for (size_t i = 0; i < m; ++i) {
-      const Point &a = places[i], &b = places[(i + 1) % m];
+      const Point &a = places[i], &b = places[loops.next[i]];
       if (++vertices_at[a] > 1) changed.insert(a);
       edges_at[a].insert(loop[i].edge);
       edges_at[b].insert(loop[i].edge);
@@ -167,18 +177,24 @@ class ExactWavefront {
   }
 
   void join(Parts& parts, const Rational& now) {
+    Loops loops;
     while (!parts.empty()) {
-      Loop loop;
       auto part = parts.begin();
       std::vector<Parts::iterator> used;
+      const size_t first = loops.pieces.size();
       do {
-        loop.push_back({part->second, part->first.first});
+        loops.previous.push_back(loops.pieces.size() - 1);
+        loops.pieces.push_back({part->second, part->first.first});
+        loops.next.push_back(loops.pieces.size());
         used.push_back(part);
         part = follower(parts, part);
       } while (part != used.front());
+      loops.previous[first] = loops.pieces.size() - 1;
+      loops.next.back() = first;
       for (const auto& p : used) parts.erase(p);
-      loops_.emplace_back(loop, now);
+      if (!together_) fronts_.emplace_back(std::exchange(loops, {}), now);
     }
+    if (!loops.pieces.empty()) fronts_.emplace_back(std::move(loops), now);
   }
   Parts::iterator follower(Parts& parts, Parts::iterator part) const {
     auto best = parts.end();
@@ -192,7 +208,8 @@ class ExactWavefront {
 
   std::vector<Point> tangents_;
   std::vector<Rational> offsets_;
-  std::vector<std::pair<Loop, Rational>> loops_;
+  std::vector<std::pair<Loops, Rational>> fronts_;
+  bool together_ = false;  // all loops are one front
   std::vector<std::set<Node>> faces_;
 };
 

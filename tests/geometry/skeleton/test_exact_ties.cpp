@@ -4,7 +4,7 @@
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/skeleton/exact_front.hpp"
 #include "tests/geometry/skeleton/exact_wavefront.hpp"
-#include "tests/geometry/skeleton/tied_rings.hpp"
+#include "tests/geometry/skeleton/holed_polygons.hpp"
 
 using namespace apothem;
 using test::ExactWavefront;
@@ -34,8 +34,9 @@ Faces faces_before(const Map& map, const Polygon& polygon, const Skeleton& skele
 
 std::string text(const Polygon& polygon) {
   std::string result;
-  for (const Vec2& v : polygon.vertices()) {
-    result += std::to_string(v.x()) + " " + std::to_string(v.y()) + ", ";
+  for (const std::vector<Vec2>& ring : rings_of(polygon)) {
+    for (const Vec2& v : ring) result += std::to_string(v.x()) + " " + std::to_string(v.y()) + ", ";
+    result += "; ";
   }
   return result;
 }
@@ -63,46 +64,84 @@ bool agree(const std::set<ExactWavefront::Node>& nodes, const std::vector<int>& 
          });
 }
 
+// Fails unless the faces of the skeletons of all images are those of the polygon's own.
+void require_same_roof(const Polygon& polygon) {
+  const Faces faces = faces_before({}, polygon, straight_skeleton(polygon));
+  for (const Map& map : test::maps()) {
+    INFO(map.name << ": " << text(polygon));
+    const Polygon image = map(polygon);
+    const Skeleton skeleton = straight_skeleton(image);
+    REQUIRE_FALSE(broken_law(skeleton, image));
+    REQUIRE(faces_before(map, image, skeleton) == faces);
+  }
+}
+
+using Centres = std::set<std::array<double, 2>>;
+Centres centres_before(const Map& map, const Polygon& polygon, const InscribedCircle& circle) {
+  Centres centres;
+  for (const Vec2& c : circle.centres) {
+    const Vec2 p = map.undo(polygon.origin() + c);
+    centres.insert({p.x(), p.y()});
+  }
+  return centres;
+}
+
+void require_same_circle(const Polygon& polygon) {
+  const InscribedCircle circle = largest_inscribed_circle(polygon);
+  const Centres centres = centres_before({}, polygon, circle);
+  for (const Map& map : test::maps()) {
+    INFO(map.name << ": " << text(polygon));
+    const Polygon image = map(polygon);
+    const InscribedCircle other = largest_inscribed_circle(image);
+    REQUIRE(other.radius / map.scale == circle.radius);
+    REQUIRE(centres_before(map, image, other) == centres);
+  }
+}
+
+// Fails unless the skeleton is that of the brute-force wavefront.
+void require_exact(const Polygon& polygon) {
+  const Skeleton skeleton = straight_skeleton(polygon);
+  const ExactWavefront exact(polygon);
+  for (int e = 0; e < polygon.size(); ++e) {
+    INFO("edge " << e);
+    REQUIRE(agree(exact.faces()[e], skeleton.faces[e], skeleton, polygon));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("tied events: no map of the ring changes a bit of roof and faces", "[skeleton]") {
   test::SeededRandom random(431);
   for (int i = 0; i < (test::long_run() ? 10000 : test::scaled(240)); ++i) {
-    const Polygon polygon = test::random_tied(random, i);
-    const Skeleton skeleton = straight_skeleton(polygon);
-    const Faces faces = faces_before({}, polygon, skeleton);
-    for (const Map& map : test::maps()) {
-      INFO("ring " << i << ", " << map.name << ": " << text(polygon));
-      const Polygon image = map(polygon);
-      REQUIRE(faces_before(map, image, straight_skeleton(image)) == faces);
-    }
+    INFO("ring " << i);
+    require_same_roof(test::random_tied(random, i));
+  }
+}
+
+TEST_CASE("tied events around holes: no map of the rings changes a bit of roof and faces",
+          "[skeleton]") {
+  test::SeededRandom random(436);
+  for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(300)); ++i) {
+    INFO("polygon " << i);
+    require_same_roof(test::random_tied_with_holes(random, i));
   }
 }
 
 TEST_CASE("tied events: no map of the ring changes a bit of the inscribed circle", "[skeleton]") {
   test::SeededRandom random(433);
-  using Centres = std::set<std::array<double, 2>>;
-  const auto centres_before = [](const Map& map, const Polygon& polygon,
-                                 const InscribedCircle& circle) {
-    Centres centres;
-    for (const Vec2& c : circle.centres) {
-      const Vec2 p = map.undo(polygon.origin() + c);
-      centres.insert({p.x(), p.y()});
-    }
-    return centres;
-  };
   for (int i = 0; i < (test::long_run() ? 10000 : test::scaled(1000)); ++i) {
     const Polygon polygon = test::random_tied(random, i);
-    if (polygon.is_convex()) continue;
-    const InscribedCircle circle = largest_inscribed_circle(polygon);
-    const Centres centres = centres_before({}, polygon, circle);
-    for (const Map& map : test::maps()) {
-      INFO("ring " << i << ", " << map.name << ": " << text(polygon));
-      const Polygon image = map(polygon);
-      const InscribedCircle other = largest_inscribed_circle(image);
-      REQUIRE(other.radius / map.scale == circle.radius);
-      REQUIRE(centres_before(map, image, other) == centres);
-    }
+    INFO("ring " << i);
+    if (!polygon.is_convex()) require_same_circle(polygon);
+  }
+}
+
+TEST_CASE("tied events around holes: no map of the rings changes a bit of the inscribed circle",
+          "[skeleton]") {
+  test::SeededRandom random(437);
+  for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(500)); ++i) {
+    INFO("polygon " << i);
+    require_same_circle(test::random_tied_with_holes(random, i));
   }
 }
 
@@ -134,15 +173,16 @@ TEST_CASE("tied events: maps of pairs change forces by round-off only", "[skelet
 
 TEST_CASE("without ties: both constructions have the same bits", "[skeleton]") {
   test::SeededRandom random(435);
-  for (int i = 0; i < test::scaled(400); ++i) {
-    const Polygon polygon =
-        samples::random_star_shaped(random, random.integer(4, 40), random.uniform(.1, 1));
+  for (int i = 0; i < test::scaled(800); ++i) {
+    const Polygon polygon = i % 2 == 0 ? samples::random_star_shaped(random, random.integer(4, 40),
+                                                                     random.uniform(.1, 1))
+                                       : test::random_drilled(random, random.integer(1, 20));
     const Skeleton skeleton = straight_skeleton(polygon);
     std::optional<SkeletonParts> parts = exact_skeleton(polygon, {});
     INFO("polygon " << i);
     REQUIRE(parts);
     REQUIRE(faces_before({}, polygon, skeleton) ==
-            faces_before({}, polygon, assemble(std::move(*parts))));
+            faces_before({}, polygon, assemble(std::move(*parts), polygon)));
   }
 }
 
@@ -151,11 +191,16 @@ TEST_CASE("tied events: the skeleton is that of a wavefront in rational numbers"
   for (int i = 0; i < (test::long_run() ? 500 : test::scaled(250)); ++i) {
     const Polygon polygon(test::random_rational(random, random.integer(2, i % 5 == 0 ? 30 : 12)));
     INFO("ring " << i << ": " << text(polygon));
-    const Skeleton skeleton = straight_skeleton(polygon);
-    const ExactWavefront exact(polygon);
-    for (int e = 0; e < polygon.size(); ++e) {
-      INFO("edge " << e);
-      REQUIRE(agree(exact.faces()[e], skeleton.faces[e], skeleton, polygon));
-    }
+    require_exact(polygon);
+  }
+}
+
+TEST_CASE("tied events around holes: the skeleton is that of a wavefront in rational numbers",
+          "[skeleton]") {
+  test::SeededRandom random(438);
+  for (int i = 0; i < (test::long_run() ? 500 : test::scaled(250)); ++i) {
+    const Polygon polygon = test::random_rational_with_holes(random);
+    INFO("polygon " << i << ": " << text(polygon));
+    require_exact(polygon);
   }
 }

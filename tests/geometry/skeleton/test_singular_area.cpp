@@ -19,7 +19,7 @@ SingularArea singular(const Ring& ring, double depth) {
 
 double perimeter(const SingularArea& area) {
   double sum = 0;
-  for (const Ring& ring : area.polygons) {
+  for (const Ring& ring : rings_of(area.polygons)) {
     for (size_t i = 0; i < ring.size(); ++i) sum += (ring[(i + 1) % ring.size()] - ring[i]).norm();
   }
   return sum;
@@ -103,7 +103,7 @@ TEST_CASE("singular area of a rectangle: a rectangle, then its ridge, then nothi
     const SingularArea area = singular(rectangle, r);
     CHECK(area.kind() == Kind::polygons);
     REQUIRE(area.polygons.size() == 1);
-    CHECK(area.polygons[0].size() == 4);
+    CHECK(area.polygons[0].outer.size() == 4);
     CHECK(area.segments.empty());
     CHECK(area.points.empty());
     CHECK(std::abs(area.area() - (5 - 2 * r) * (2 - 2 * r)) < 1e-13);
@@ -224,7 +224,7 @@ TEST_CASE("singular area against closed forms", "[singular]") {
     CHECK(std::abs(singular(l_ring(), r).area() - (3 - 8 * r + r * r * 4)) < 1e-14);
     CHECK(std::abs(singular(cross_ring(), r).area() - (5 - 12 * r + r * r * 4)) < 1e-14);
     CHECK(singular(cross_ring(), r).polygons.size() == 1);
-    CHECK(singular(cross_ring(), r).polygons[0].size() == 12);
+    CHECK(singular(cross_ring(), r).polygons[0].outer.size() == 12);
   }
   SECTION("a comb falls apart into its back and its teeth") {
     // Back 5 x .6, three teeth 1 x 3: the back is gone from .3 to .5 but where teeth stand on it.
@@ -233,7 +233,7 @@ TEST_CASE("singular area against closed forms", "[singular]") {
     CHECK(singular(comb, .29).polygons.size() == 1);
     const SingularArea teeth = singular(comb, .4);
     REQUIRE(teeth.polygons.size() == 3);
-    for (const Ring& tooth : teeth.polygons) {
+    for (const Ring& tooth : rings_of(teeth.polygons)) {
       CHECK(area_of(tooth) == Approx((1 - 2 * .4) * (3.6 - 2 * .4)).margin(1e-13));
     }
   }
@@ -265,14 +265,14 @@ TEST_CASE("singular areas of any shape are level, nested, simple and shrink by t
     const Skeleton skeleton = straight_skeleton(polygon);
     const double size = largest_extent(polygon);
     SingularArea outer;
-    outer.polygons = {polygon.local_vertices()};
+    outer.polygons = {{polygon.local_vertices(), {}}};
     for (const double share : {.02, .2, .4, .6, .8, .95}) {
       const double r = share * skeleton.roof_height;
       const SingularArea area = singular_area(skeleton, r);
       REQUIRE(!area.polygons.empty());
       CHECK(static_cast<int>(area.polygons.size()) == components_above(skeleton, r));
       double worst = 0;
-      for (const Ring& ring : area.polygons) {
+      for (const Ring& ring : rings_of(area.polygons)) {
         CHECK(area_of(ring) > 0);
         // Level: in the face that holds it, the roof is the distance to the face's line.
         for (const Vec2& x : ring) {
@@ -284,7 +284,7 @@ TEST_CASE("singular areas of any shape are level, nested, simple and shrink by t
           }
           worst = std::max(worst, nearest);
           CHECK(std::any_of(outer.polygons.begin(), outer.polygons.end(),
-                            [&](const Ring& o) { return inside(o, x); }));
+                            [&](const PolygonWithHoles& o) { return inside(o.outer, x); }));
         }
       }
       CHECK(worst < 1e-13 * size);

@@ -6,110 +6,17 @@
 #include <numeric>
 #include <sstream>
 
-#include "geometry/polygon/predicates.hpp"
+#include "tests/geometry/skeleton/motorcycle_roof.hpp"
 #include "tests/public_rings.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;
+using test::MotorcycleRoof;
 
 namespace {
 
 using Ring = std::vector<Vec2>;
-
-// An independent roof for polygons in general position: the lower envelope of the edges' slabs,
-// bounded by the tracks of the motorcycle graph (Huber & Held 2011; Cheng & Vigneron 2007).
-class MotorcycleRoof {
- public:
-  explicit MotorcycleRoof(const Polygon& polygon) : ring_(polygon.local_vertices()) {
-    const int n = polygon.size();
-    for (int i = 0; i < n; ++i) tangents_.push_back((vertex(i + 1) - vertex(i)).normalized());
-    tracks_.resize(n);
-    for (int i = 0; i < n; ++i) {
-      if (orientation(polygon[(i + n - 1) % n], polygon[i], polygon.after(i)) >= 0) continue;
-      const Vec2 p = normal((i + n - 1) % n), q = normal(i);
-      tracks_[i] = {true, (p + q) / (1 + p.dot(q)), time_to_wall(i, (p + q) / (1 + p.dot(q)))};
-    }
-    run_motorcycles();
-  }
-
-  [[nodiscard]] double operator()(const Vec2& x) const {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int e = 0; e < size(); ++e) {
-      const double height = normal(e).dot(x - vertex(e));
-      if (height < 0 || height >= lowest) continue;
-      if (right_of_start(e, x) && left_of_end(e, x)) lowest = height;
-    }
-    return lowest;
-  }
-
- private:
-  struct Track {
-    bool exists = false;
-    Vec2 speed = Vec2::Zero();
-    double end = 0;  // time of the crash
-  };
-  [[nodiscard]] int size() const { return static_cast<int>(ring_.size()); }
-  [[nodiscard]] const Vec2& vertex(int i) const { return ring_[i % size()]; }
-  [[nodiscard]] Vec2 normal(int e) const { return {-tangents_[e].y(), tangents_[e].x()}; }
-
-  [[nodiscard]] double time_to_wall(int v, const Vec2& speed) const {
-    double first = std::numeric_limits<double>::infinity();
-    for (int e = 0; e < size(); ++e) {
-      if (e == v || (e + 1) % size() == v) continue;
-      const Vec2 side = vertex(e + 1) - vertex(e);
-      const double denominator = apothem::cross(speed, side);
-      const double time = apothem::cross(vertex(e) - vertex(v), side) / denominator;
-      const double u = apothem::cross(vertex(e) - vertex(v), speed) / denominator;
-      if (time > 0 && u >= 0 && u <= 1) first = std::min(first, time);
-    }
-    return first;
-  }
-
-  // A motorcycle stops where another one has passed before, unless that one had stopped earlier.
-  void run_motorcycles() {
-    struct Meeting {
-      double late, early;
-      int loser, winner;
-    };
-    std::vector<Meeting> meetings;
-    for (int i = 0; i < size(); ++i) {
-      for (int j = 0; j < size(); ++j) {
-        if (i == j || !tracks_[i].exists || !tracks_[j].exists) continue;
-        const Vec2 &a = tracks_[i].speed, &b = tracks_[j].speed, d = vertex(j) - vertex(i);
-        const double mine = apothem::cross(d, b) / apothem::cross(a, b);
-        const double other = apothem::cross(d, a) / apothem::cross(a, b);
-        if (other > 0 && mine >= other) meetings.push_back({mine, other, i, j});
-      }
-    }
-    std::sort(meetings.begin(), meetings.end(),
-              [](const Meeting& a, const Meeting& b) { return a.late < b.late; });
-    for (const Meeting& m : meetings) {
-      if (m.late < tracks_[m.loser].end && m.early <= tracks_[m.winner].end) {
-        tracks_[m.loser].end = m.late;
-      }
-    }
-  }
-
-  // Sides of the slab of edge e: the track of a reflex vertex and, from its end or from a convex
-  // vertex on, the perpendicular to the edge.
-  [[nodiscard]] double border(int e, int v, double height) const {
-    const Track& track = tracks_[v % size()];
-    const Vec2 base = vertex(v) - vertex(e);
-    if (!track.exists) return tangents_[e].dot(base);
-    return tangents_[e].dot(base + std::min(height, track.end) * track.speed);
-  }
-  [[nodiscard]] bool right_of_start(int e, const Vec2& x) const {
-    return tangents_[e].dot(x - vertex(e)) >= border(e, e, normal(e).dot(x - vertex(e)));
-  }
-  [[nodiscard]] bool left_of_end(int e, const Vec2& x) const {
-    return tangents_[e].dot(x - vertex(e)) <= border(e, e + 1, normal(e).dot(x - vertex(e)));
-  }
-
-  Ring ring_;
-  std::vector<Vec2> tangents_;
-  std::vector<Track> tracks_;
-};
 
 bool contains(const Ring& ring, const Vec2& x) {
   bool inside = false;

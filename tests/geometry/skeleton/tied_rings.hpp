@@ -231,8 +231,8 @@ inline Polygon random_tied(Random& random, int kind) {
 /// A map of the plane, and of the numbering, that must not matter.
 struct Map {
   std::string name;
-  int start = 0;           // in thirds of the vertices
-  bool backwards = false;  // sense of the ring
+  int start = 0;           // of each ring in thirds of its vertices, and the first of the holes
+  bool backwards = false;  // sense of the rings
   bool mirrored = false;   // x changes its sign, after the turn
   int quarters = 0;        // counter-clockwise
   double scale = 1;
@@ -249,11 +249,16 @@ struct Map {
     return v + Vec2(0, 0);  // no zero has a sign
   }
   [[nodiscard]] Polygon operator()(const Polygon& polygon) const {
-    TiedRing ring = polygon.vertices();
-    std::rotate(ring.begin(), ring.begin() + start * static_cast<int>(ring.size()) / 3, ring.end());
-    if (backwards) std::reverse(ring.begin(), ring.end());
-    for (Vec2& v : ring) v = (*this)(v);
-    return Polygon(ring);
+    Rings rings = rings_of(polygon);
+    for (TiedRing& ring : rings) {
+      std::rotate(ring.begin(), ring.begin() + start * static_cast<int>(ring.size()) / 3,
+                  ring.end());
+      if (backwards) std::reverse(ring.begin(), ring.end());
+      for (Vec2& v : ring) v = (*this)(v);
+    }
+    std::rotate(rings.begin() + 1, rings.begin() + 1 + start * (polygon.rings() - 1) / 3,
+                rings.end());
+    return Polygon(rings.front(), {rings.begin() + 1, rings.end()});
   }
 };
 
