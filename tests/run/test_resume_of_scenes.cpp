@@ -25,20 +25,13 @@ struct Cut {
 
 // Every kernel, with friction and with damping: polygons, the elements of meshes, their outlines,
 // and outlines with polygons.
-const std::vector<Cut> kShort{{"arch-falls", 300, 2},
-                              {"bar-on-bar-damped", 400, 2},
-                              {"bounce-flat-30", 3000, 1},
-                              {"corner-impact-elements", 300, 2},
-                              {"crosses-collide", 3000, 1},
-                              {"drum", 300, 2},
-                              {"cantilever-voronoi", 300, 1},
-                              {"meshed-incline", 1200, 6},
-                              {"oblique-discs", 600, 2},
-                              {"oblique-discs-elements", 600, 2},
-                              {"pressed-blocks", 0, 1},
-                              {"rotor-in-ring", 3000, 1},
-                              {"slope-fails-meshed", 200, 2},
-                              {"stack", 300, 1}};
+const std::vector<Cut> kShort{{"arch-falls", 300, 2},         {"bar-on-bar-damped", 400, 2},
+                              {"bounce-flat-30", 3000, 1},    {"corner-impact-elements", 300, 2},
+                              {"crosses-collide", 3000, 1},   {"drum", 300, 2},
+                              {"cantilever-voronoi", 300, 1}, {"meshed-incline", 1200, 6},
+                              {"oblique-discs", 600, 2},      {"oblique-discs-elements", 600, 2},
+                              {"pressed-blocks", 0, 1},       {"rotor-in-ring", 3000, 1},
+                              {"slope-fails-meshed", 200, 2}, {"stack", 300, 1}};
 
 std::string text_of(const std::string& file) {
   std::string text = content(file);

@@ -325,7 +325,7 @@ TEST_CASE("polygon describes a polygon with holes", "[program][polygon][holes]")
   const std::string file = folder.write(
       "a.wkt", "POLYGON ((0 0, 6 0, 6 4, 0 4), (1 1, 2 1, 2 3, 1 3), (4 1, 5 1, 5 3))");
   const Result r = run({"polygon", file, "--json", "--picture", folder / "a.svg", "--vtk",
-                        folder / "vtk", "--output", "offset:0.25", "-o", folder / "o.geojson"},
+                        folder / "vtk", "--output", "offset:0.1", "-o", folder / "o.geojson"},
                        folder);
   INFO(r.err);
   REQUIRE(r.code == 0);
