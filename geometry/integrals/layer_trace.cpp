@@ -29,12 +29,15 @@ unsigned beyond(const Box& box, double x, double y) {
 // Calls f(edge) for the edges whose boxes are not apart from the box `reach`.
 template <class F>
 void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& reach, const F& f) {
-  unsigned start = beyond(reach, p.x[0] + dx, p.y[0] + dy);
-  for (int e = 0; e < p.size; ++e) {
-    const unsigned end = beyond(reach, p.x[e + 1] + dx, p.y[e + 1] + dy);
-    if ((start & end) == 0) f(e);
-    start = end;
-  }
+  for_each_ring(p.links, p.size, [&](int first, int last) {
+    const auto sides = [&](int v) { return beyond(reach, p.x[v] + dx, p.y[v] + dy); };
+    unsigned start = sides(first);
+    for (int e = first; e < last; ++e) {
+      const unsigned end = sides(p.end(e));
+      if ((start & end) == 0) f(e);
+      start = end;
+    }
+  });
 }
 
 }  // namespace
