@@ -130,7 +130,7 @@ TEST_CASE("around holes: wavefront, CGAL and exact front find the same roof", "[
     };
     check(trace_wavefront(polygon, 1, {}), "wavefront");
     check(ask_cgal(rings_of(polygon), false, 60, {}).parts, "CGAL");
-    check(ask_cgal(rings_of(polygon), true, 60, {}).parts, "CGAL, exactly");
+    if (i % 8 == 1) check(ask_cgal(rings_of(polygon), true, 60, {}).parts, "CGAL, exactly");
     std::optional<SkeletonParts> exact = exact_skeleton(polygon, {});
     REQUIRE(exact);
     for (Skeleton::Node& node : exact->nodes) node.point += polygon.origin();
@@ -288,7 +288,7 @@ TEST_CASE("singular areas of a frame: frames, then its ridges, then nothing", "[
   REQUIRE(open.polygons.size() == 1);
   CHECK(open.polygons[0].holes.empty());
   CHECK(open.area() == Approx(64 - 30).epsilon(1e-14));
-  // Between the hole and the outer ring, the level of a ridge is part of the ring's own hole.
+  // Below the ridge between the hole and the outer ring, the hole is surrounded.
   const SingularArea closed = singular_at(uneven, .25);
   REQUIRE(closed.polygons.size() == 1);
   CHECK(closed.polygons[0].holes.size() == 1);
@@ -317,7 +317,8 @@ TEST_CASE("a level that passes a saddle divides the ring around a hole in simple
       for (const Vec2& v : ring) corners.emplace(v.x(), v.y());
       CHECK(corners.size() == ring.size());
     }
-    CHECK(std::abs(area.area() - singular_area(skeleton, 1).area()) < .1);
+    const double area_at_saddle = singular_area(skeleton, 1).area();
+    CHECK(area.area() == Approx(area_at_saddle + (1 - depth) * perimeter_of(area)).margin(1e-3));
   }
 }
 
