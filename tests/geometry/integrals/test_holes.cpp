@@ -96,7 +96,7 @@ TEST_CASE("edge method, exact overlap and 100 digits agree about polygons with h
     CAPTURE(i, edge.integral.weight, pair.a.rings(), pair.b.rings());
     const PairResult other = overlap(pair.a, pair.b, choice);
     check_same(edge, other, 1e-12);
-    if (i % 8 < 2) check_same(edge, exact_method(pair.a, pair.b, choice), 1e-12);
+    if (i % 16 == 0 || i % 64 == 1) check_same(edge, exact_method(pair.a, pair.b, choice), 1e-12);
   }
 }
 
@@ -207,11 +207,12 @@ TEST_CASE("a bar in the hole of a frame touches nothing until it reaches a side"
     CHECK(at(.55).integral.weight == 0);
     const double deep = .01;
     const PairResult touch = at(.55 + deep);
-    // Both potentials rise by 1 over 1/8 and 1/5 of a metre from the side that is touched, along a
-    // length of .6; within `deep` of its ends the potential of the bar belongs to its long sides.
-    CHECK(touch.integral.force.x() < 0);
+    // The frame's potential rises by 1 over half of its width, or over the radius of the circle in
+    // a corner between its two outer sides and the inner vertex; that of the bar over .2. Within
+    // `deep` of the ends of the bar's short side its potential belongs to the long sides.
+    const double r = field == Field::roof ? .125 : .25 * std::sqrt(2) / (1 + std::sqrt(2));
     CHECK(std::abs(touch.integral.force.y()) < 1e-15);
-    CHECK(-touch.integral.force.x() == Approx(deep * (.6 / .125 + (.6 - deep) / .2)));
+    CHECK(touch.integral.force.x() == Approx(deep * (.6 / r + (.6 - deep) / .2)));
     CHECK(penetration(ring, samples::block(.35 + deep, -.3, .75 + deep, .3)) == Approx(deep));
   }
 }
