@@ -51,6 +51,8 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/polygon_with_holes.hpp
   geometry/polygon/predicates.hpp
   geometry/polygon/progress.hpp
+  geometry/polygon/rare.hpp
+  geometry/polygon/ring_links.hpp
   geometry/polygon/ring_moments.hpp
   geometry/polygon/segment_moments.hpp
   geometry/polygon/triangulation.hpp
@@ -60,7 +62,6 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/potential/piecewise_minimum.hpp
   geometry/potential/point_values.hpp
   geometry/potential/potential.hpp
-  geometry/potential/rare.hpp
   geometry/regions/boolean.hpp
   geometry/regions/repair.hpp
   geometry/regions/ring_faults.hpp

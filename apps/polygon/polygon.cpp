@@ -251,7 +251,14 @@ void write_files(const Analysis& a, const PolygonOptions& options, const std::st
                  const std::optional<PictureFormat>& picture,
                  const std::optional<ShapeChoice>& shapes) {
   std::string text;
-  if (shapes) text = shape_text(shapes_of(a, *shapes), shape_format_of(options.output));
+  if (shapes) {
+    const std::vector<Shape> found = shapes_of(a, *shapes);
+    text = shape_text(found, shape_format_of(options.output));
+    if (found.empty()) {
+      fmt::print(stderr, "apothem: warning: {} has no shape: the roof is {} m high\n",
+                 options.output, a.skeleton.roof_height);
+    }
+  }
   if (picture) {
     write_file(options.picture,
                draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, reference},

@@ -96,7 +96,7 @@ TEST_CASE("edge method, exact overlap and 100 digits agree about polygons with h
     CAPTURE(i, edge.integral.weight, pair.a.rings(), pair.b.rings());
     const PairResult other = overlap(pair.a, pair.b, choice);
     check_same(edge, other, 1e-12);
-    if (i % 16 == 0 || i % 64 == 1) check_same(edge, exact_method(pair.a, pair.b, choice), 1e-12);
+    if (i % 16 == 0 || i % 64 == 33) check_same(edge, exact_method(pair.a, pair.b, choice), 1e-12);
   }
 }
 
