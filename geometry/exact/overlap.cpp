@@ -115,7 +115,7 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
   if (apart(bounding_box(a), bounding_box(b))) return regions;
   Owner of_a(a);
   Owner of_b(b);
-  const auto owned = [&](CGAL::Polygon_2<Exact>& outline) -> ExactRing {
+  const auto owned = [&](const CGAL::Polygon_2<Exact>& outline) -> ExactRing {
     std::vector<OverlapEdge> edges;
     for (size_t i = 0; i < outline.size(); ++i) {
       const Exact::Point_2& p = outline[i];
@@ -126,12 +126,12 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
       const bool certain = of_a.candidates() + of_b.candidates() == 1;
       edges.push_back({of_a.choose(p, q, certain), of_b.choose(p, q, certain)});
     }
-    return {std::move(outline), std::move(edges)};
+    return {outline, std::move(edges)};
   };
-  for (CGAL::Polygon_with_holes_2<Exact>& part : intersection<Exact>(a, b)) {
+  for (const CGAL::Polygon_with_holes_2<Exact>& part : intersection<Exact>(a, b)) {
     ExactRegion& region = regions.emplace_back();
     region.push_back(owned(part.outer_boundary()));
-    for (CGAL::Polygon_2<Exact>& hole : part.holes()) region.push_back(owned(hole));
+    for (const CGAL::Polygon_2<Exact>& hole : part.holes()) region.push_back(owned(hole));
   }
   return regions;
 }

@@ -201,9 +201,9 @@ void add_polygons(const Level& level, SingularArea& result) {
   for (const Loop& loop : loops) {
     std::vector<Vec2> ring = places(level, loop.nodes);
     // A loop that round-off has flattened is reported as the segment or the point that is left.
-    if (ring.size() > 2) result.polygons.push_back({std::move(ring), {}});
     if (ring.size() == 2) result.segments.push_back({ring[0], ring[1]});
     if (ring.size() == 1) result.points.push_back(ring[0]);
+    if (ring.size() > 2) result.polygons.push_back({std::move(ring), {}});
   }
 }
 

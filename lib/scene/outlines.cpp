@@ -273,7 +273,9 @@ class OutlineMaker {
       holes[*std::ranges::max_element(enclosing[i], {}, depth)].push_back(i);
     }
     std::set<std::int32_t> gone;
-    for (const auto& [outer, inner] : holes) {
+    for (const auto& entry : holes) {
+      const std::int32_t outer = entry.first;
+      const std::vector<std::int32_t>& inner = entry.second;
       gone.insert(inner.begin(), inner.end());
       const Outline& outline = outlines_[outer];
       const bool cut = unless_faulty(shape_of(outline), [&] { cut_holes(outer, inner); });
