@@ -148,20 +148,20 @@ class Splitter {
   // Joins the boundaries of holes in the overlap, which turn clockwise, to the boundary around
   // them: the smallest one that encloses a point of theirs.
   void join_holes() {
-    std::vector<double> twice_area(static_cast<size_t>(size()), 0);
-    bool any = false;
+    std::vector<double>& twice_area = work_.twice_area;
+    std::vector<int>& roots = work_.roots;
+    twice_area.assign(segments_.size(), 0.);
+    roots.clear();
     for (int r = 0; r < size(); ++r) {
-      twice_area[work_.sets.find(r)] += cross(segments_[r].start, segments_[r].end);
+      roots.push_back(work_.sets.find(r));
+      twice_area[roots.back()] += cross(segments_[r].start, segments_[r].end);
     }
-    for (const double area : twice_area) any = any || area < 0;
-    if (!any) return;
-    std::vector<int> roots;
-    for (int r = 0; r < size(); ++r) roots.push_back(work_.sets.find(r));
+    if (std::ranges::all_of(twice_area, [](double area) { return area >= 0; })) return;
     for (int hole = 0; hole < size(); ++hole) {
       if (!(twice_area[hole] < 0)) continue;
       int around = -1;
       for (int outer = 0; outer < size(); ++outer) {
-        if (!(twice_area[outer] > 0) || !encloses(roots, outer, segments_[hole].start)) continue;
+        if (!(twice_area[outer] > 0) || !encloses(outer, segments_[hole].start)) continue;
         if (around < 0 || twice_area[outer] < twice_area[around]) around = outer;
       }
       if (around < 0) continue;
@@ -171,10 +171,10 @@ class Splitter {
   }
 
   // Whether the boundary of the segments with a root goes round a point.
-  [[nodiscard]] bool encloses(const std::vector<int>& roots, int root, const Vec2& point) const {
+  [[nodiscard]] bool encloses(int root, const Vec2& point) const {
     bool inside = false;
     for (int r = 0; r < size(); ++r) {
-      if (roots[r] != root) continue;
+      if (work_.roots[r] != root) continue;
       const Vec2 p = segments_[r].start - point, q = segments_[r].end - point;
       if ((p.y() > 0) != (q.y() > 0) && (cross(p, q) > 0) == (q.y() > p.y())) inside = !inside;
     }

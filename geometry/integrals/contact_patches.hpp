@@ -55,6 +55,8 @@ struct PatchWorkspace {
   std::vector<char> joined;                   ///< per end: whether it has been joined to another
   std::vector<Bridge> bridges;                ///< candidates for joining loose ends
   std::vector<edge_detail::Extent> extents;   ///< extents per patch
+  std::vector<double> twice_area;             ///< per root: twice the area within its boundary
+  std::vector<int> roots;                     ///< per segment: the root of its boundary
 };
 
 /// Splits a pair of polygons into its contact patches. The arguments a, b, offset and near are
