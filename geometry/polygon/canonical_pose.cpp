@@ -93,6 +93,7 @@ std::vector<Vec2> CanonicalPose::back(std::vector<Vec2> points) const {
   for (const AxisMap& symmetry : symmetries_) {
     const Vec2 shift = symmetry(polygon_.origin()) - polygon_.origin();
     std::vector<Vec2> images;
+    images.reserve(points.size());
     for (const Vec2& p : points) images.emplace_back(symmetry(p) + shift);
     for (Vec2& p : points) {
       p = (p + *std::min_element(images.begin(), images.end(),
