@@ -69,7 +69,7 @@ Polygon mapped(const Polygon& polygon, const Map& map) {
   for (std::vector<Vec2>& ring : rings) {
     for (Vec2& v : ring) v = map(v);
   }
-  return Polygon(rings.front(), {rings.begin() + 1, rings.end()});
+  return Polygon(polygon_of_rings(rings));
 }
 /// Moved by a vector.
 Polygon shifted(const Polygon& polygon, const Vec2& by);

@@ -110,17 +110,11 @@ Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
   return list;
 }
 
-Rings holes_of(const Polygon& polygon) {
-  Rings rings = rings_of(polygon);
-  rings.erase(rings.begin());
-  return rings;
-}
-
 Json to_json(const Analysis& a) {
   return {{"area", a.moments.area},
           {"centroid", world(a.polygon, a.moments.centroid)},
           {"polar_moment", a.moments.polar},
-          {"holes", Json::parse(holes_json(holes_of(a.polygon)))},
+          {"holes", Json::parse(holes_json(polygon_of_rings(rings_of(a.polygon)).holes))},
           {"inradius", a.circle.radius},
           {"incircle_centres", world_list(a.polygon, a.circle.centres)},
           {"roof_height", a.skeleton.roof_height},

@@ -109,7 +109,7 @@ py::list offset_of(const Polygon& polygon, double depth) {
     for (std::vector<Vec2>& ring : rings) {
       for (Vec2& v : ring) v += polygon.origin();
     }
-    polygons.append(Polygon(rings.front(), {rings.begin() + 1, rings.end()}));
+    polygons.append(Polygon(polygon_of_rings(rings)));
   }
   return polygons;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <stdexcept>
 
 #include "geometry/polygon/cyclic.hpp"
@@ -87,10 +86,7 @@ PolygonWithHoles normalised_with_holes(const Polygon& polygon) {
   for (std::vector<Vec2>& ring : rings) {
     for (Vec2& v : ring) v = scale * (v - middle);
   }
-  PolygonWithHoles result{std::move(rings[0]), {}};
-  result.holes.assign(std::make_move_iterator(rings.begin() + 1),
-                      std::make_move_iterator(rings.end()));
-  return result;
+  return polygon_of_rings(rings);
 }
 
 void place_into(const std::vector<Vec2>& ring, const Vec2& place, double angle, double scale,

@@ -80,7 +80,7 @@ CanonicalPose::CanonicalPose(const Polygon& polygon)
         for (const AxisMap* image : steps) {
           if (image) symmetries_.push_back(composed(*image, map_));
         }
-        return Polygon(images.first.front(), {images.first.begin() + 1, images.first.end()});
+        return Polygon(polygon_of_rings(images.first));
       }()),
       shift_(map_.undo(polygon_.origin()) - polygon.origin()) {}
 

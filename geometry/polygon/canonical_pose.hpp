@@ -1,7 +1,7 @@
 // A pose of a polygon that does not depend on where its rings start, on their senses, on the order
-// of its holes, on mirrors that
-// exchange the senses of the axes or the axes themselves, and on quarter turns. What is computed
-// in this pose and mapped back does not depend on them either, to the last bit.
+// of its holes, on mirrors that exchange the senses of the axes or the axes themselves, and on
+// quarter turns. What is computed in this pose and mapped back does not depend on them either, to
+// the last bit.
 #pragma once
 
 #include <vector>

@@ -17,6 +17,11 @@ struct PolygonWithHoles {
   Rings holes;              ///< the boundaries of the holes, clockwise, m
 };
 
+/// The polygon of an outer ring and its holes, which follow it.
+inline PolygonWithHoles polygon_of_rings(const Rings& rings) {
+  return {rings.front(), {rings.begin() + 1, rings.end()}};
+}
+
 /// The outer ring and the holes.
 inline Rings rings_of(const PolygonWithHoles& polygon) {
   Rings rings{polygon.outer};

@@ -214,9 +214,7 @@ class ExactFront {
   // True if doubles show that vertex c misses the piece from u on, or meets it after a time.
   [[nodiscard]] bool misses(const Vertex& c, const Vertex& u, double now, double until) const {
     const Vertex& v = vertices_[u.next];
-    const double fast = std::max({c.fast, u.fast, v.fast});
-    if (!(fast < kFastest)) return false;
-    const double slow = kSlow * std::max(1., fast / kFast);
+    if (!(c.fast < kFast && u.fast < kFast && v.fast < kFast)) return false;
     const auto& [tx, ty, offset] = rough_[u.after];
     const auto along = [tx = tx, ty = ty](const Vertex& p, double t) {
       const auto& [x, y, vx, vy, since] = p.rough;
@@ -231,18 +229,17 @@ class ExactFront {
     const double height =
         tx * (y + (now - since) * vy) - ty * (x + (now - since) * vx) - offset - now;
     if (rate > kRough || height < -kRough) return true;
-    if (rate < -slow) {
+    if (rate < -kSlow) {
       const double time = now - height / rate;
       return time > until + kRough || beside(time) != 0;
     }
     const double last = std::min(until, 1.0) + kRough;  // no front lasts longer than 1
     const int side = beside(now);
-    return height > slow * (last - now) + kRough || (side != 0 && beside(last) == side);
+    return height > kSlow * (last - now) + kRough || (side != 0 && beside(last) == side);
   }
-  // Where a vertex approaches a line faster than kSlow, the time has an error of 1e-12 for one of
-  // 1e-14 in the height, and a place, at a speed of kFast, one of 3e-11. At larger speeds the
-  // approach has to be as much faster. Doubles are not asked about vertices beyond kFastest.
-  static constexpr double kFast = 30, kFastest = 1e5, kSlow = 1e-2, kRough = 1e-7;
+  // Doubles are asked about vertices that are slower than kFast. Where one approaches a line faster
+  // than kSlow, the time has an error of 3e-11 for one of 1e-14 in the height, and a place 1e-9.
+  static constexpr double kFast = 30, kSlow = 1e-2, kRough = 1e-7;
 
   // Looks whether vertex c hits the piece from u on before all that is known.
   void look(Vertex& c, int piece, const Fine& now, double rough_now) {

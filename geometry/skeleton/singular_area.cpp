@@ -186,9 +186,7 @@ void add_polygons_with_holes(const Level& level, const std::vector<Loop>& loops,
         std::max_element(rings.begin(), rings.end(),
                          [](const auto& p, const auto& q) { return ring_area(p) < ring_area(q); });
     std::swap(*outer, rings.front());
-    result.polygons.push_back({std::move(rings.front()), {}});
-    result.polygons.back().holes.assign(std::make_move_iterator(rings.begin() + 1),
-                                        std::make_move_iterator(rings.end()));
+    result.polygons.push_back(polygon_of_rings(rings));
   }
 }
 

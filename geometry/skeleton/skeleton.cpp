@@ -22,7 +22,7 @@ using Node = Skeleton::Node;
 // The rings as a polygon, if they are those of one, each in the right sense.
 std::optional<Polygon> simple_polygon(const Rings& rings) {
   try {
-    Polygon polygon(rings.front(), {rings.begin() + 1, rings.end()});
+    Polygon polygon(polygon_of_rings(rings));
     if (rings_of(polygon) == rings) return polygon;
   } catch (const InvalidPolygon&) {
   }

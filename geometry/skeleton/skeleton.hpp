@@ -47,8 +47,8 @@ struct Skeleton {
   };
   std::vector<Node> nodes;  ///< the first n nodes are the polygon's vertices, of height 0
   std::vector<Arc> arcs;    ///< the first n arcs are the polygon's edges
-  /// Node indices of the face of each edge e, counter-clockwise, beginning with the ends
-  /// of the edge: e and polygon.next(e).
+  /// Node indices of the face of each edge e, counter-clockwise, beginning with the ends of the
+  /// edge: e and polygon.next(e).
   std::vector<std::vector<int>> faces;
   double roof_height = 0;  ///< largest height of a node, m
   int attempts = 1;        ///< number of constructions until one passed the laws
@@ -80,8 +80,7 @@ Skeleton straight_skeleton(const Polygon& polygon, const Progress& progress = {}
 ///   cycles as the polygon has holes; without holes they form a tree. Hence the faces form a disc
 ///   with so many holes.
 /// - Every node lies inside the polygon, outside of its holes. Its height is its distance to the
-/// line of every edge whose
-///   face meets there.
+///   line of every edge whose face meets there.
 /// - Every face is simple, is monotone along its edge and has a positive area, and the areas sum to
 ///   the area of the polygon. Hence the faces tile the polygon.
 /// - Water runs off the roof: every valley starts at a reflex vertex or continues a lower valley.

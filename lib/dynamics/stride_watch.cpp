@@ -223,8 +223,7 @@ std::optional<StrideWatch::Fault> StrideWatch::look(const State& state, const Su
 
 StrideWatch::Middle StrideWatch::middle_of(BodyIndex body) const {
   if (is_rigid(body)) {
-    const Rings rings = model_.bodies[static_cast<size_t>(body)].potential.rings();
-    const Polygon polygon(rings.front(), {rings.begin() + 1, rings.end()});
+    const Polygon polygon(polygon_of_rings(model_.bodies[static_cast<size_t>(body)].rings()));
     return {polygon.origin() + largest_inscribed_circle(polygon).centres.front(), {}};
   }
   const DeformableBody& mesh_body = model_.deformables[static_cast<size_t>(body - rigid_count_)];

@@ -49,7 +49,7 @@ std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring) {
 
 std::vector<std::vector<int>> convex_cells(const Rings& rings) {
   if (rings.size() == 1) return convex_cells(rings[0]);
-  const PolygonWithHoles whole{rings[0], {rings.begin() + 1, rings.end()}};
+  const PolygonWithHoles whole = polygon_of_rings(rings);
   std::vector<Vec2> corners;
   for (const std::vector<Vec2>& ring : rings) {
     corners.insert(corners.end(), ring.begin(), ring.end());

@@ -159,8 +159,7 @@ std::vector<std::vector<int>> cells_of(const Shape& shape) {
   if (shape.kind != Kind::polygon) return {all};
   if (shape.rings.size() == 1) return convex_cells(shape.rings[0]);
   std::vector<std::vector<int>> cells;
-  for (const Triangle& triangle : triangulate(
-           PolygonWithHoles{shape.rings[0], {shape.rings.begin() + 1, shape.rings.end()}})) {
+  for (const Triangle& triangle : triangulate(polygon_of_rings(shape.rings))) {
     cells.emplace_back(triangle.begin(), triangle.end());
   }
   return cells;

@@ -86,11 +86,9 @@ std::vector<PolygonWithHoles> BodyReader::outlines() const {
     };
     if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
       const Vec2 centre = polygon->origin() + area_moments(*polygon).centroid;
-      PolygonWithHoles& outline = outlines.emplace_back();
-      for (const std::vector<Vec2>& ring : rings_of(*polygon)) {
-        (outline.outer.empty() ? outline.outer : outline.holes.emplace_back()) =
-            there(ring, centre);
-      }
+      Rings rings = rings_of(*polygon);
+      for (std::vector<Vec2>& ring : rings) ring = there(ring, centre);
+      outlines.push_back(polygon_of_rings(rings));
       continue;
     }
     const Mesh& mesh = std::get<MeshSpec>(shapes_[i]).mesh;

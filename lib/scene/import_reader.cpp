@@ -212,9 +212,7 @@ class Import {
     return body;
   }
 
-  static Rings holes_of(const Outline& outline) {
-    return {outline.rings.begin() + 1, outline.rings.end()};
-  }
+  static Rings holes_of(const Outline& outline) { return polygon_of_rings(outline.rings).holes; }
 
   static JsonValue filled(const Outline& outline, const JsonValue& mesh) {
     const ValueMaker make(mesh);

@@ -149,14 +149,10 @@ class OutlineMaker {
     add_rings(shape, std::move(rings));
   }
 
-  static Polygon polygon_of(const Rings& rings) {
-    return {rings[0], {rings.begin() + 1, rings.end()}};
-  }
-
   // An outline by its rings: the outer one and holes.
   void add_rings(const DrawnShape& shape, Rings rings) {
     try {
-      Polygon polygon = polygon_of(rings);
+      Polygon polygon(polygon_of_rings(rings));
       add_outline(shape, std::move(polygon), std::move(rings));
     } catch (const InvalidPolygon& error) {
       refuse(shape,
@@ -303,7 +299,7 @@ class OutlineMaker {
       rings.push_back(cut.rings[0]);
     }
     try {
-      polygons_[outer] = polygon_of(rings);
+      polygons_[outer] = Polygon(polygon_of_rings(rings));
     } catch (const InvalidPolygon& error) {
       refuse(outline, fmt::format("{}; correct the drawing there", error.what()));
     }

@@ -67,7 +67,7 @@ struct Written {
         v = model.origin + Vec2(pose.head<2>()) + samples::turned(v, pose[2]);
       }
     }
-    return {rings[0], {rings.begin() + 1, rings.end()}};
+    return Polygon(polygon_of_rings(rings));
   }
   Folder folder;
   Model model;
@@ -126,7 +126,7 @@ TEST_CASE("frames are read back with the holes", "[results][holes]") {
   REQUIRE(frame.holes.size() == 1);
   REQUIRE(frame.holes.at(0).size() == 2);
   const Rings rings = rings_of(frame.position, frame.mesh.element(0), frame.holes, 0);
-  const Polygon read(rings[0], {rings.begin() + 1, rings.end()});
+  const Polygon read(polygon_of_rings(rings));
   const Polygon there = written.there();
   CHECK(read.size() == there.size());
   CHECK(area_moments(read).area == Approx(area_moments(there).area).epsilon(1e-14));
@@ -171,7 +171,7 @@ TEST_CASE("pictures of bodies leave their holes open", "[picture][holes]") {
   const FieldFigure figure = picture_of(run, choice);
   const Field& far = figure.panels[0].fields[0].field;
   const Rings rings = rings_of(far.mesh.nodes, far.mesh.element(0), far.holes, 0);
-  const Polygon moved(rings[0], {rings.begin() + 1, rings.end()});
+  const Polygon moved(polygon_of_rings(rings));
   CHECK(area_moments(moved).area == Approx(area_moments(plate()).area).epsilon(1e-13));
   CHECK(decode(draw_fields(figure, PictureFormat::png)).width > 100);
 }

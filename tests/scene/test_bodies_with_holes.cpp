@@ -55,7 +55,7 @@ Polygon placed(const RigidBody& body) {
   for (std::vector<Vec2>& ring : rings) {
     for (Vec2& v : ring) v = body.position + turned(v, body.angle);
   }
-  return {rings[0], {rings.begin() + 1, rings.end()}};
+  return Polygon(polygon_of_rings(rings));
 }
 
 bool apart_from(const Polygon& a, const Polygon& b) {

@@ -216,3 +216,50 @@ TEST_CASE("a bar in the hole of a frame touches nothing until it reaches a side"
     CHECK(penetration(ring, samples::block(.35 + deep, -.3, .75 + deep, .3)) == Approx(deep));
   }
 }
+
+TEST_CASE("a frame and the same frame cut open far away press alike") {
+  // The cut is on the left. The reference length is given, because the potential near the cut, and
+  // with it the roof's height, is another one.
+  constexpr double kCut = 1e-3, kWidth = .25, kInner = 1 - kWidth;
+  const Polygon closed = frame(kWidth);
+  const Polygon open({{-1, -1},
+                      {1, -1},
+                      {1, 1},
+                      {-1, 1},
+                      {-1, kCut},
+                      {-kInner, kCut},
+                      {-kInner, kInner},
+                      {kInner, kInner},
+                      {kInner, -kInner},
+                      {-kInner, -kInner},
+                      {-kInner, -kCut},
+                      {-1, -kCut}});
+  test::SeededRandom random(26);
+  int touching = 0;
+  for (int i = 0; i < test::scaled(400); ++i) {
+    const Polygon shape =
+        i % 3 == 0 ? samples::random_convex(random, 6) : samples::random_star_shaped(random, 9, .3);
+    const Polygon block = samples::posed(samples::scaled(shape, random.uniform(.1, .4)),
+                                         {random.uniform(.2, 1.2), random.uniform(-1.2, 1.2)},
+                                         random.uniform(0, 2 * kPi));
+    PotentialChoice choice = own_reference(i % 2 == 0 ? Field::roof : Field::distance);
+    choice.reference = Reference::length;
+    choice.length = .125;
+    const Potential of_closed = make_potential(closed, choice);
+    const Potential of_open = make_potential(open, choice);
+    const Potential of_block = make_potential(block, choice);
+    const PairResult one = edge_method(closed, of_closed, block, of_block);
+    const PairResult other = edge_method(open, of_open, block, of_block);
+    touching += one.integral.weight > 0 ? 1 : 0;
+    const double size = 1e-13 * (1 + one.integral.weight);
+    CHECK((one.integral.force - other.integral.force).norm() <= size);
+    CHECK(std::abs(one.integral.moment_b - other.integral.moment_b) <= size);
+    CHECK(std::abs(one.integral.weight - other.integral.weight) <= size);
+    CHECK(std::abs(one.volume.energy - other.volume.energy) <= 1e-13);
+    CHECK(std::abs(one.volume.overlap_area - other.volume.overlap_area) <= 1e-13);
+    const test::PatchResult patches = test::edge_patches(closed, of_closed, block, of_block);
+    const test::PatchResult of_cut = test::edge_patches(open, of_open, block, of_block);
+    CHECK(patches.patches.size() == of_cut.patches.size());
+  }
+  CHECK(touching > 0);
+}

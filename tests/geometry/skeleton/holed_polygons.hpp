@@ -99,9 +99,7 @@ inline Rings random_cells_with_holes(Random& random, int most, int holes) {
   return rings;
 }
 
-inline Polygon polygon_of(const Rings& rings) {
-  return {rings.front(), {rings.begin() + 1, rings.end()}};
-}
+inline Polygon polygon_of(const Rings& rings) { return Polygon(polygon_of_rings(rings)); }
 
 /// Cells with cut corners, sometimes with straight vertices: all normals are rational.
 inline Polygon random_rational_with_holes(Random& random) {

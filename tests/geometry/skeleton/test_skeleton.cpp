@@ -6,6 +6,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "tests/geometry/skeleton/lawful.hpp"
 #include "tests/geometry/skeleton/motorcycle_roof.hpp"
 #include "tests/public_rings.hpp"
 #include "tests/support.hpp"
@@ -42,18 +43,10 @@ double roof(const Skeleton& skeleton, const Polygon& polygon, const Vec2& x) {
   return std::nan("");
 }
 
-Skeleton lawful(const Polygon& polygon) {
-  Skeleton skeleton = straight_skeleton(polygon);
-  const std::optional<std::string> broken = broken_law(skeleton, polygon);
-  INFO(broken.value_or(""));
-  REQUIRE(!broken);
-  return skeleton;
-}
-
 // Largest error of the roof at random points, relative to the polygon's size.
 template <class Reference>
 double roof_error(const Polygon& polygon, const Reference& reference, Random& random, int points) {
-  const Skeleton skeleton = lawful(polygon);
+  const Skeleton skeleton = test::lawful(polygon);
   const Box box = bounding_box(polygon);
   double worst = 0;
   for (int i = 0; i < points; ++i) {
@@ -120,7 +113,7 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
     for (const Variant& variant : variants(shape.ring)) {
       INFO(shape.name << ", " << variant.name);
       const Polygon polygon(variant.ring);
-      const Skeleton skeleton = lawful(polygon);
+      const Skeleton skeleton = test::lawful(polygon);
       const double coarse = variant.name == "shifted by 1e6" ? 1e-9 : 1e-12;
       CHECK(std::abs(skeleton.roof_height / variant.scale - shape.height) < coarse);
     }
@@ -134,7 +127,7 @@ TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skele
     const Ring ring = polygon.vertices();
     for (const Variant& variant : variants(ring)) {
       INFO(ring.size() << " vertices, " << variant.name);
-      lawful(Polygon(variant.ring));
+      test::lawful(Polygon(variant.ring));
     }
   }
 }
@@ -198,12 +191,12 @@ TEST_CASE("turned shapes of equal arms always get a skeleton", "[skeleton]") {
   for (int i = 0; i < cases; ++i) {
     const double angle = random.uniform(0, 2 * M_PI);
     if (i % 4 == 0) {
-      lawful(turned(equal_arms(random.integer(3, 9), random.uniform(.2, 3)), angle));
+      test::lawful(turned(equal_arms(random.integer(3, 9), random.uniform(.2, 3)), angle));
     } else if (i % 4 == 1) {
-      lawful(turned(star(random.integer(3, 12), random.uniform(.1, .9)), angle));
+      test::lawful(turned(star(random.integer(3, 12), random.uniform(.1, .9)), angle));
     } else {
       const double arm = i % 4 == 2 ? 1 : random.uniform(.2, 3);
-      const Skeleton skeleton = lawful(turned(cross_of_squares(arm), angle));
+      const Skeleton skeleton = test::lawful(turned(cross_of_squares(arm), angle));
       if (skeleton.attempts > 1) ++retried;
       CHECK(std::abs(skeleton.roof_height - .5) < 1e-12);
     }
@@ -217,7 +210,7 @@ TEST_CASE("the same skeleton, whatever lies about in memory", "[skeleton]") {
   std::vector<std::vector<char>> litter;
   for (int i = 0; i < test::scaled(100); ++i) {
     const Polygon polygon = turned(cross_of_squares(), random.uniform(0, 6));
-    const Skeleton first = lawful(polygon);
+    const Skeleton first = test::lawful(polygon);
     for (int repeat = 0; repeat < 5; ++repeat) {
       for (int k = 0; k < 30; ++k) litter.emplace_back(random.integer(16, 2000));
       for (int k = 0; k < 20; ++k) {
@@ -236,7 +229,7 @@ TEST_CASE("the same skeleton, whatever lies about in memory", "[skeleton]") {
 
 TEST_CASE("a wrong skeleton breaks a law", "[skeleton]") {
   const Polygon polygon = l_shape();
-  const Skeleton good = lawful(polygon);
+  const Skeleton good = test::lawful(polygon);
   const auto broken = [&](auto spoil) {
     Skeleton bad = good;
     spoil(bad);
@@ -265,7 +258,7 @@ TEST_CASE("every public ring gets a skeleton", "[skeleton]") {
       } catch (const InvalidPolygon&) {
         continue;
       }
-      lawful(*polygon);
+      test::lawful(*polygon);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "geometry/skeleton/skeletons.hpp"
 #include "geometry/skeleton/wavefront.hpp"
 #include "tests/geometry/skeleton/holed_polygons.hpp"
+#include "tests/geometry/skeleton/lawful.hpp"
 #include "tests/geometry/skeleton/motorcycle_roof.hpp"
 
 using namespace apothem;
@@ -16,14 +17,6 @@ namespace {
 
 using samples::Random;
 using Ring = std::vector<Vec2>;
-
-Skeleton lawful_with_holes(const Polygon& polygon) {
-  Skeleton skeleton = straight_skeleton(polygon);
-  const std::optional<std::string> broken = broken_law(skeleton, polygon);
-  INFO(broken.value_or(""));
-  REQUIRE(!broken);
-  return skeleton;
-}
 
 Ring face_ring(const Skeleton& skeleton, int face) {
   Ring ring;
@@ -88,7 +81,7 @@ TEST_CASE("around holes: the roof is that of the motorcycle graph", "[skeleton][
   for (int i = 0; i < test::scaled(600); ++i) {
     const Polygon polygon = test::random_drilled(random, random.integer(1, 20));
     INFO("polygon " << i << ": " << polygon.size() << " vertices, " << polygon.rings() << " rings");
-    const Skeleton skeleton = lawful_with_holes(polygon);
+    const Skeleton skeleton = test::lawful(polygon);
     const test::MotorcycleRoof reference(polygon);
     const Box box = bounding_box(polygon);
     double worst = 0;
@@ -117,7 +110,7 @@ TEST_CASE("around holes: wavefront, CGAL and exact front find the same roof", "[
                                 ? test::annulus(random.integer(3, 12), random.uniform(.2, .9), 1)
                                 : test::random_drilled(random, random.integer(1, 12));
     INFO("polygon " << i << ": " << polygon.size() << " vertices, " << polygon.rings() << " rings");
-    const Skeleton skeleton = lawful_with_holes(polygon);
+    const Skeleton skeleton = test::lawful(polygon);
     const auto check = [&](std::optional<SkeletonParts> parts, const char* construction) {
       INFO(construction);
       REQUIRE(parts);
@@ -143,7 +136,7 @@ TEST_CASE("tied shapes with holes obey the laws, and their faces tile them", "[s
   for (int i = 0; i < test::scaled(600); ++i) {
     const Polygon polygon = test::random_tied_with_holes(random, i);
     INFO("polygon " << i << ": " << polygon.size() << " vertices, " << polygon.rings() << " rings");
-    const Skeleton skeleton = lawful_with_holes(polygon);
+    const Skeleton skeleton = test::lawful(polygon);
     const Box box = bounding_box(polygon);
     for (int k = 0; k < 20; ++k) face_at(skeleton, polygon, random_point(random, box));
     // The mitred front is nowhere slower than the distance: no roof is higher than that.
@@ -163,22 +156,22 @@ TEST_CASE("roof heights of rings, frames and plates are known by hand", "[skelet
     for (const double inner : {.1, .5, .93}) {
       for (const double angle : {0., .3}) {
         INFO(n << "-gon, " << inner << ", " << angle);
-        const Skeleton skeleton = lawful_with_holes(test::annulus(n, inner, angle));
+        const Skeleton skeleton = test::lawful(test::annulus(n, inner, angle));
         const double height = (1 - inner) * std::cos(M_PI / n) / 2;
         CHECK(std::abs(skeleton.roof_height - height) < 1e-14);
       }
     }
   }
   const Polygon frame(test::rectangle(0, 0, 20, 10), {test::rectangle(2, 3, 15, 5)});
-  CHECK(lawful_with_holes(frame).roof_height == 1.5);
+  CHECK(test::lawful(frame).roof_height == 1.5);
   // Circles fit into the middle between four square holes, and roofs into their cross of corridors.
   const Polygon plate(test::rectangle(0, 0, 10, 10),
                       {test::rectangle(1, 1, 3, 3), test::rectangle(6, 1, 3, 3),
                        test::rectangle(6, 6, 3, 3), test::rectangle(1, 6, 3, 3)});
-  CHECK(lawful_with_holes(plate).roof_height == 1);
+  CHECK(test::lawful(plate).roof_height == 1);
   // A diamond in a square: its corners hit the middles of the sides before the corners are left.
   const Polygon diamond(test::rectangle(0, 0, 8, 8), {{{4, 1}, {7, 4}, {4, 7}, {1, 4}}});
-  const Skeleton skeleton = lawful_with_holes(diamond);
+  const Skeleton skeleton = test::lawful(diamond);
   CHECK(std::abs(skeleton.roof_height - 5 / (2 + M_SQRT2)) < 1e-14);
 }
 
@@ -186,16 +179,16 @@ TEST_CASE("big rings with big holes get a skeleton", "[skeleton][holes]") {
   test::SeededRandom random(64);
   const int n = std::max(200, test::scaled(2000));
   const double inner = .6;
-  CHECK(std::abs(lawful_with_holes(test::annulus(n, inner)).roof_height -
+  CHECK(std::abs(test::lawful(test::annulus(n, inner)).roof_height -
                  (1 - inner) * std::cos(M_PI / n) / 2) < 1e-13);
   const std::vector<Vec2> outer = samples::random_star_shaped(random, n, .9).vertices();
   std::vector<Vec2> hole = samples::random_star_shaped(random, n, .8).vertices();
   for (Vec2& v : hole) v *= .7;
   const Polygon ragged(outer, {hole});
-  CHECK(lawful_with_holes(ragged).attempts == 1);
+  CHECK(test::lawful(ragged).attempts == 1);
   const Polygon coast(samples::coastline(random, n).vertices(), {});
   const Box box = bounding_box(coast);
-  lawful_with_holes(test::with_holes(coast.vertices(), 60, [&] {
+  test::lawful(test::with_holes(coast.vertices(), 60, [&] {
     Ring ring = samples::coastline(random, 40).vertices();
     const Vec2 centre = random_point(random, box);
     for (Vec2& v : ring) v = centre + .05 * v;
@@ -205,7 +198,7 @@ TEST_CASE("big rings with big holes get a skeleton", "[skeleton][holes]") {
 
 TEST_CASE("a wrong skeleton of a polygon with a hole breaks a law", "[skeleton][holes]") {
   const Polygon polygon(test::rectangle(0, 0, 20, 10), {test::rectangle(2, 3, 15, 5)});
-  const Skeleton good = lawful_with_holes(polygon);
+  const Skeleton good = test::lawful(polygon);
   const auto broken = [&](auto spoil) {
     Skeleton bad = good;
     spoil(bad);
@@ -305,7 +298,7 @@ TEST_CASE("a level that passes a saddle divides the ring around a hole in simple
   const double down = 1 + std::sqrt(5.);
   const Polygon polygon(test::rectangle(0, 0, 20, 20),
                         {{{10, 20 - down}, {8, 16 - down}, {8, 6}, {12, 6}, {12, 16 - down}}});
-  const Skeleton skeleton = lawful_with_holes(polygon);
+  const Skeleton skeleton = test::lawful(polygon);
   for (const double depth : {.999, 1., 1.001}) {
     INFO(depth);
     const SingularArea area = singular_area(skeleton, depth);

@@ -258,7 +258,7 @@ struct Map {
     }
     std::rotate(rings.begin() + 1, rings.begin() + 1 + start * (polygon.rings() - 1) / 3,
                 rings.end());
-    return Polygon(rings.front(), {rings.begin() + 1, rings.end()});
+    return Polygon(polygon_of_rings(rings));
   }
 };
 
