@@ -287,7 +287,7 @@ Hertz hertz(double b_over_radius, int cells, double stiffness) {
 
 }  // namespace
 
-TEST_CASE("Hertz: two half discs", "[equilibrium]") {
+TEST_CASE("Hertz: two half discs", "[equilibrium][slow]") {
   struct Case {
     double b_over_radius;
     int cells;  // over the half-width

@@ -323,7 +323,7 @@ Sheared cylinders(double pressed, int cells, double coefficient, double sheared,
 
 }  // namespace
 
-TEST_CASE("Cattaneo and Mindlin: two cylinders, pressed and sheared", "[static_friction]") {
+TEST_CASE("Cattaneo and Mindlin: two cylinders, pressed and sheared", "[static_friction][slow]") {
   struct Case {
     double pressed;
     int cells;

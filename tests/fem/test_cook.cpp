@@ -48,7 +48,7 @@ double middle_displacement(ElementKind kind, Mesh mesh) {
 
 }  // namespace
 
-TEST_CASE("Cook's membrane", "[fem]") {
+TEST_CASE("Cook's membrane", "[fem][slow]") {
   // R. Cook, D. Malkus, M. Plesha, Concepts and Applications of Finite Element Analysis, 1989.
   constexpr double kKnown = 23.96;
   std::map<ElementKind, double> last;

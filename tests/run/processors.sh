@@ -20,7 +20,7 @@ cd "$folder"
 
 # Rigid bodies: quadrilaterals and crosses of a random fill fall onto each other, with friction and
 # dashpots, in a region with its columns and roses. They spin, and are few enough to be tracked all.
-hopper=(--set fill.0.count=20 --set 'fill.0.shapes=[{"quadrilateral":{}},{"cross":{}}]' --set 'fill.0.velocity=[0,-4]'
+hopper=(--set fill.0.count=12 --set 'fill.0.shapes=[{"quadrilateral":{}},{"cross":{}}]' --set 'fill.0.velocity=[0,-4]'
         --set 'fill.0.region=[[-0.7,0.82],[0.7,0.82],[0.7,1.8],[-0.7,1.8]]' --set fill.0.spin=3
         --set contact.normal_stiffness=1e8 --set 'regions={"bin":{"polygon":[[-0.8,0],[0.8,0],[0.8,2],[-0.8,2]]}}'
         --set output.history.interval=1e-4)

@@ -103,7 +103,7 @@ std::string ratio(double value) {
 }  // namespace
 
 TEST_CASE("a box that lands flat leaves floors of both kinds alike, with friction and damping",
-          "[friction][damping]") {
+          "[friction][damping][slow]") {
   // By integrations with springs and dashpots spread over the length in contact.
   struct Row {
     double friction, ratio;
@@ -146,7 +146,8 @@ TEST_CASE("a flat landing has the restitution of a spring and a dashpot that can
   }
 }
 
-TEST_CASE("impacts of random polygons leave floors of both kinds alike", "[friction][damping]") {
+TEST_CASE("impacts of random polygons leave floors of both kinds alike",
+          "[friction][damping][slow]") {
   samples::Random random(41);
   const int cases = long_run() ? 200 : kSanitized ? 1 : 12;
   int alike = 0;

@@ -365,7 +365,7 @@ TEST_CASE("checkpoints within a load step change nothing, and a run goes on from
 }
 
 TEST_CASE("a static run that is killed goes on from the checkpoint behind a load step",
-          "[resume]") {
+          "[resume][slow]") {
   const Folder folder;
   Scene scene = scene_of(folder, pressed_blocks(3));
   scene.output.checkpoint_interval = 1e-9;
@@ -383,7 +383,7 @@ TEST_CASE("a static run that is killed goes on from the checkpoint behind a load
   CHECK(content(folder / "whole/history.csv") == content(folder / "killed/history.csv"));
 }
 
-TEST_CASE("a run that is killed at its very end has its last row once", "[resume]") {
+TEST_CASE("a run that is killed at its very end has its last row once", "[resume][slow]") {
   for (const std::string& text : {pressed_blocks(3), rubbing_scenes()[1].text}) {
     const Folder folder;
     Scene scene = scene_of(folder, text);

@@ -110,7 +110,8 @@ const char* const kMeshOnFloor = R"({ "gravity": [0, -9.81],
 
 }  // namespace
 
-TEST_CASE("shipped scenes that are stopped write the same files to the last byte", "[resume]") {
+TEST_CASE("shipped scenes that are stopped write the same files to the last byte",
+          "[resume][slow]") {
   std::mt19937 random(40);
   std::vector<Cut> cuts = kShort;
   if (long_run()) {

@@ -144,7 +144,7 @@ TEST_CASE("a servo wall settles along its direction only", "[settled]") {
   CHECK(Vec2(run.state().force(wall).head<2>()).dot(along) == Approx(-2000).epsilon(1e-7));
 }
 
-TEST_CASE("a servo wall that nothing resists does not settle", "[settled]") {
+TEST_CASE("a servo wall that nothing resists does not settle", "[settled][slow]") {
   const Folder folder;
   Parts parts;
   parts.meshed = true, parts.more = lid(3000, "[0, 1]");
@@ -152,7 +152,7 @@ TEST_CASE("a servo wall that nothing resists does not settle", "[settled]") {
                     Catch::Contains("/time/start") && Catch::Contains("\"lid\""));
 }
 
-TEST_CASE("a floor that moves drags a block along, with a mesh or without", "[settled]") {
+TEST_CASE("a floor that moves drags a block along, with a mesh or without", "[settled][slow]") {
   const bool meshed = GENERATE(false, true);
   CAPTURE(meshed);
   const Folder folder;

@@ -253,7 +253,7 @@ void find_defaults(const Json& node, const std::string& pointer, std::set<std::s
 
 }  // namespace
 
-TEST_CASE("the defaults of the JSON Schema are those of the reader", "[scene]") {
+TEST_CASE("the defaults of the JSON Schema are those of the reader", "[scene][slow]") {
   const Json schema = Json::parse(std::ifstream(test::kSource + "/docs/scene.schema.json"));
   std::set<std::string> published, tested;
   find_defaults(schema, "", published);

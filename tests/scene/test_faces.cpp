@@ -69,7 +69,7 @@ std::vector<Line> random_lines(samples::Random& random, bool on_lattice, double 
 
 }  // namespace
 
-TEST_CASE("ends snap as if each had looked at all lines, with ties", "[scene][faces]") {
+TEST_CASE("ends snap as if each had looked at all lines, with ties", "[scene][faces][slow]") {
   samples::Random random(7);
   int moved = 0, feet = 0;
   for (int trial = 0; trial < 3000; ++trial) {

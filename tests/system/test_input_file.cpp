@@ -86,7 +86,8 @@ TEST_CASE("every kind of input without end is refused at once", "[input][program
   }
 }
 
-TEST_CASE("no message quotes a file that is another one than it should be", "[input][program]") {
+TEST_CASE("no message quotes a file that is another one than it should be",
+          "[input][program][slow]") {
   const Folder folder;
   const std::string text = "secret:$6$longsecret:19000:0:99999:7:::\nother:secret:1:2\n";
   for (const char* name : {"f", "f.json", "f.msh", "f.dxf", "f.wkt", "f.csv", "f.geojson"}) {

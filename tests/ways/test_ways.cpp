@@ -568,7 +568,7 @@ TEST_CASE("one situation said in many ways gives one result", "[ways][slow]") {
   }
 }
 
-TEST_CASE("two scenes of one situation agree", "[ways]") {
+TEST_CASE("two scenes of one situation agree", "[ways][slow]") {
   const Folder folder;
   for (const ways::Twins& twins : ways::all_twins()) {
     CAPTURE(twins.name);

@@ -71,7 +71,7 @@ std::string data_folder(const Folder& folder, const std::string& figure = kFigur
 
 }  // namespace
 
-TEST_CASE("every shipped figure passes the loader", "[reproduce]") {
+TEST_CASE("every shipped figure passes the loader", "[reproduce][slow]") {
   const Folder folder;
   const Result r = run({"reproduce"}, folder);
   INFO(r.err);
@@ -143,7 +143,7 @@ TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
   CHECK(run(strict, folder).code == 1);
 }
 
-TEST_CASE("a curve along a surface", "[reproduce]") {
+TEST_CASE("a curve along a surface", "[reproduce][slow]") {
   const Folder folder;
   const std::string figure = R"({ "title": "Pressure",
   "panels": [ { "x": "x [mm]", "y": "pressure [kPa]",

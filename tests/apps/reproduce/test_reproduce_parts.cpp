@@ -108,7 +108,7 @@ TEST_CASE("runs that are there are kept, others are done again", "[reproduce][sl
   CHECK(reproduce_all(folder).out.find("unchanged") == std::string::npos);
 }
 
-TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
+TEST_CASE("potentials over polygons, and their numbers", "[reproduce][slow]") {
   const Folder folder;
   const std::string figure = R"({ "title": "Maps", "panels": [ { "title": "two", "shapes": [
     { "label": "rectangle", "polygon": [[0,0],[4,0],[4,2],[0,2]], "reference": 0.5, "expect": [

@@ -195,7 +195,7 @@ TEST_CASE("the expected values agree with closed forms", "[hard_pairs]") {
   }
 }
 
-TEST_CASE("both methods on the hard pairs", "[hard_pairs]") {
+TEST_CASE("both methods on the hard pairs", "[hard_pairs][slow]") {
   Figures edge, overlap;
   for (const PolygonPair& entry : list()) {
     const Pair pair = listed(entry);
