@@ -165,6 +165,11 @@ void Elements::add_losses(double dt, Energies& e) const {
 
 void Elements::bound_step(StepBounds& bounds) { bounds.nodes = limit_; }
 
+bool Elements::add_tangent(const State& state, Tangent& tangent) const {
+  elements_.add_tangent(state.layout.of_nodes(state.x), state.layout.node(0), tangent);
+  return true;
+}
+
 void Elements::add_stiffness(const State& state, NodeStiffness& stiffness) {
   elements_.stiffness_sums(state.layout.of_nodes(state.x), stiffness.elastic);
 }

@@ -25,6 +25,7 @@ class Elements final : public Term {
   void add_energies(const State& state, Energies& energies) override;
   void add_losses(double dt, Energies& energies) const override;
   void bound_step(StepBounds& bounds) override;
+  bool add_tangent(const State& state, Tangent& tangent) const override;
   void add_stiffness(const State& state, NodeStiffness& stiffness) override;
   void fields(Archive& archive) override {
     archive("summed_damping_loss", summed_damping_loss_)("damping_power", damping_power_);

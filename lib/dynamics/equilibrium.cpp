@@ -55,10 +55,11 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       body_loads_(model.bodies.size() + model.deformables.size()),
       body_loads_now_(body_loads_.size()) {
   const size_t n = dofs.layout().size();
-  for (std::vector<double>* v :
-       {&mass_, &inverse_, &rest_, &last_, &drive_, &velocity_, &displacement_}) {
+  for (std::vector<double>* v : {&mass_, &inverse_, &rest_, &last_, &drive_, &velocity_,
+                                 &displacement_, &step_, &moves_, &shift_}) {
     v->assign(n, 0);
   }
+  free_.assign(n, 0);
   pushed_.assign(n, 0);
   stiffness_.elastic.assign(n - first_, 0);
   stiffness_.contact.assign((n - first_) / 2, 0);
@@ -426,15 +427,38 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
     }
   }
   check_shapes(state);
+  keep(true, result);
+  return result;
+}
+
+// By Newton's method if it finds one, else by relaxation.
+LoadStep Equilibrium::solve(State& state, const State& before, double time,
+                            const std::function<bool()>& stop) {
+  LoadStep result{time};
+  if (!pause_ || pause_->until != time) {
+    ++state.step;
+    const Verdict verdict = newton(state, before, time, stop, result);
+    if (verdict == Verdict::failed) {
+      state = before;
+    } else {
+      keep(verdict == Verdict::found, result);
+      return result;
+    }
+  }
+  return relax(state, before, time, stop);
+}
+
+void Equilibrium::keep(bool complete, LoadStep& result) {
+  result.complete = complete;
+  if (!complete) return;
   loads_ = loads_now_;
   std::ranges::copy(body_loads_now_, body_loads_.begin());
-  return result;
 }
 
 LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
                            const std::function<bool()>& stop) {
   const State before = state;
-  LoadStep result = relax(state, before, time, stop);
+  LoadStep result = solve(state, before, time, stop);
   if (!result.complete) {
     state = before;
     if (contact_) contact_->drop_trial();
@@ -475,7 +499,7 @@ void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   const State before = state;
   settling_ = true;
   find_slip(state);
-  if (!relax(state, before, state.time, stop).complete) throw Stopped();
+  if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
 }

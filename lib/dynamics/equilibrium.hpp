@@ -9,6 +9,7 @@
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/term.hpp"
 #include "lib/model/model.hpp"
+#include "lib/solver/linear_solver.hpp"
 
 namespace apothem {
 
@@ -45,6 +46,25 @@ class Equilibrium {
     std::int64_t steps = 0;      // taken so far
     std::vector<double> x, v;    // of the state that was tried
   };
+  // How far Newton's method has come in a load step (newton.cpp).
+  struct NewtonPath {
+    double until = 0;                     // end of the load step, s
+    double done = 0;                      // share of the load step that is in equilibrium
+    double step = 1;                      // to the share that is sought
+    std::int64_t iteration = 0, all = 0;  // in this share; in this load step
+    double residual = 0;                  // before the last iteration, N
+    std::vector<double> x_done, x;        // of the last equilibrium, and of the state that is tried
+  };
+  enum class Verdict { found, failed, stopped };
+  Verdict newton(State& state, const State& before, double time, const std::function<bool()>& stop,
+                 LoadStep& result);
+  Verdict find_share(State& state, const State& before, double time, NewtonPath& path,
+                     const std::function<bool()>& stop, LoadStep& result);
+  bool find_tangent(const State& state);
+  [[nodiscard]] double residual() const;
+  void refuse_unstable(const State& state);
+  void keep(bool complete, LoadStep& result);
+  LoadStep solve(State& state, const State& before, double time, const std::function<bool()>& stop);
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
   void find_forces(State& state, const State& before);
@@ -92,6 +112,11 @@ class Equilibrium {
   std::vector<double> slip_;     // what counts as displacement in contacts besides; or none
   std::vector<double> outside_;  // loads on nodes at the last equilibrium, N
   std::optional<Pause> pause_;
+  Tangent tangent_;
+  LinearSolver solver_;
+  std::vector<double> step_, moves_, shift_;  // of an iteration; of prescribed motion; added to K
+  std::vector<std::uint8_t> free_;
+  std::optional<NewtonPath> newton_pause_;
   std::vector<double> lambda_;          // of rigid bodies: stiffness / inertia, 1/s^2
   std::vector<double> radius_;          // of rigid bodies, m
   std::vector<double> least_;           // scaled mass of rigid bodies

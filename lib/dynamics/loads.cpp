@@ -59,6 +59,26 @@ void Loads::add_given_forces(std::span<double> of_nodes) const {
   }
 }
 
+// Pressures turn and grow with their edges.
+bool Loads::add_tangent(const State& state, Tangent& tangent) const {
+  for (const DeformableBody& body : model_.deformables) {
+    for (const PressureLoad& load : body.pressures) {
+      const double half = load.pressure * model_.thickness * load.history.at(state.time) / 2;
+      for (const auto& [a, b] : load.edges) {
+        const size_t at_a = state.layout.node(body.first_node + a);
+        const size_t at_b = state.layout.node(body.first_node + b);
+        for (const size_t on : {at_a, at_b}) {
+          tangent.add(on, at_b + 1, half);
+          tangent.add(on, at_a + 1, -half);
+          tangent.add(on + 1, at_b, -half);
+          tangent.add(on + 1, at_a, half);
+        }
+      }
+    }
+  }
+  return true;
+}
+
 void Loads::book(const State& state, double h, Ledger& ledger) {
   for (const Force& f : forces_) {
     ledger.add_work(h * f.force.dot(state.node_velocity(f.node)));

@@ -16,6 +16,7 @@ class Loads final : public Term {
   [[nodiscard]] std::string describe() const override;
   void add_forces(const Evaluation& evaluation) override;
   void book(const State& state, double h, Ledger& ledger) override;
+  bool add_tangent(const State& state, Tangent& tangent) const override;
   void add_given_forces(std::span<double> of_nodes) const override;
   void refresh(const State& state) override { find(state); }
 

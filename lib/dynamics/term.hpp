@@ -12,6 +12,7 @@
 #include "lib/dynamics/time_step.hpp"
 #include "lib/execution/stopwatch.hpp"
 #include "lib/model/state.hpp"
+#include "lib/solver/tangent.hpp"
 
 namespace apothem {
 
@@ -71,6 +72,9 @@ class Term {
 
   // For static runs:
   virtual void add_stiffness(const State& /*state*/, NodeStiffness& /*stiffness*/) {}
+  /// Adds the derivative of minus its forces by the coordinates, where the last evaluation was.
+  /// Returns false if it does not know it.
+  virtual bool add_tangent(const State& /*state*/, Tangent& /*tangent*/) const { return true; }
   /// Adds given forces on nodes, N.
   virtual void add_given_forces(std::span<double> /*of_nodes*/) const {}
 

@@ -8,6 +8,7 @@
 
 #include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/dispatch.hpp"
+#include "lib/execution/dual.hpp"
 #include "lib/fem/mass.hpp"
 
 namespace apothem {
@@ -488,6 +489,45 @@ void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double>
           const size_t at = 2 * static_cast<size_t>(set.first_node + nodes[i]);
           sums[at] += std::abs(plus[i].x - minus[i].x) / (2 * step);
           sums[at + 1] += std::abs(plus[i].y - minus[i].y) / (2 * step);
+        }
+      }
+    });
+  });
+}
+
+void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const {
+  constexpr int kAtOnce = 8;  // derivatives that are found in one pass over an element
+  using Number = Dual<kAtOnce>;
+  std::vector<Point<Number>> moved, force;
+  each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
+                                     int element, const Point<double>* w) {
+    const ElementSet& set = sets_[index];
+    const std::span<const int> nodes = set.mesh->element(element);
+    const auto coordinate = [&](int i) {
+      return first + 2 * static_cast<size_t>(set.first_node + nodes[static_cast<size_t>(i / 2)]) +
+             static_cast<size_t>(i % 2);
+    };
+    moved.resize(static_cast<size_t>(corners));
+    force.resize(static_cast<size_t>(corners));
+    const Elastic& elastic = material(index, element).elastic;
+    with_law(elastic, [&]<class Law>(const Law& law) {
+      const Response<Law, false> response(law, elastic, 0, set.thickness);
+      for (int from = 0; from < 2 * corners; from += kAtOnce) {
+        const int end = std::min(from + kAtOnce, 2 * corners);
+        for (int i = 0; i < corners; ++i) moved[static_cast<size_t>(i)] = {w[i].x, w[i].y};
+        for (int j = from; j < end; ++j) {
+          Point<Number>& point = moved[static_cast<size_t>(j / 2)];
+          (j % 2 ? point.y : point.x).d.v[j - from] = 1;
+        }
+        Number power(0.);
+        Element::force(Stored<Number>{data.base}, response, corners, moved.data(), moved.data(),
+                       force.data(), power);
+        for (int i = 0; i < 2 * corners; ++i) {
+          const Point<Number>& point = force[static_cast<size_t>(i / 2)];
+          const Number& component = i % 2 ? point.y : point.x;
+          for (int j = from; j < end; ++j) {
+            tangent.add(coordinate(i), coordinate(j), component.d.v[j - from]);
+          }
         }
       }
     });

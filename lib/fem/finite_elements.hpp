@@ -23,6 +23,7 @@
 #include "lib/fem/element.hpp"
 #include "lib/fem/stress.hpp"
 #include "lib/mesh/mesh.hpp"
+#include "lib/solver/tangent.hpp"
 
 namespace apothem {
 
@@ -86,6 +87,11 @@ class FiniteElements {
   /// tangent stiffness K at the displacements `u` (m): the sum of the row sums of the elements' own
   /// matrices, which come from central differences of their forces. Damping does not count.
   void stiffness_sums(std::span<const double> u, std::span<double> sums) const;
+
+  /// Adds the tangent stiffness K = d(internal forces)/du at the displacements `u` (m), N/m, in
+  /// which node 0 has the coordinates `first` and `first` + 1. It is exact: the elements' own force
+  /// kernels are differentiated (lib/execution/dual.hpp). Damping does not count.
+  void add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const;
 
   /// Mean Cauchy stress of every element at the displacements `u` (m), in the order of the sets and
   /// of the elements in each mesh. Stress of damping is not included.

@@ -1,0 +1,57 @@
+// Numbers that carry derivatives (forward differentiation): a kernel that is a template of its
+// number type gives, with these in place of doubles, its values and their exact derivatives. So no
+// law is written twice, and a tangent cannot disagree with its force.
+#pragma once
+
+#include "lib/execution/pack.hpp"
+
+namespace apothem {
+
+/// A number and its derivatives by `n` variables. Comparisons look at the number alone, so that a
+/// kernel takes the branches that it takes with doubles.
+template <int n>
+struct Dual {
+  double v = 0;                 ///< the number
+  PackOf<n> d = PackOf<n>(0.);  ///< its derivatives
+
+  Dual() = default;
+  APOTHEM_INLINE Dual(double value) : v(value), d(0.) {}  // NOLINT: constants mix with duals
+  APOTHEM_INLINE Dual(double value, const PackOf<n>& derivatives) : v(value), d(derivatives) {}
+  /// The variable with this number.
+  static APOTHEM_INLINE Dual variable(double value, int number) {
+    Dual x(value);
+    x.d.v[number] = 1;
+    return x;
+  }
+
+  friend APOTHEM_INLINE Dual operator+(const Dual& a, const Dual& b) {
+    return {a.v + b.v, a.d + b.d};
+  }
+  friend APOTHEM_INLINE Dual operator-(const Dual& a, const Dual& b) {
+    return {a.v - b.v, a.d - b.d};
+  }
+  friend APOTHEM_INLINE Dual operator*(const Dual& a, const Dual& b) {
+    return {a.v * b.v, PackOf<n>(a.v) * b.d + PackOf<n>(b.v) * a.d};
+  }
+  friend APOTHEM_INLINE Dual operator/(const Dual& a, const Dual& b) {
+    const double quotient = a.v / b.v;
+    return {quotient, (a.d - PackOf<n>(quotient) * b.d) / PackOf<n>(b.v)};
+  }
+  friend APOTHEM_INLINE Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
+  APOTHEM_INLINE Dual& operator+=(const Dual& b) { return *this = *this + b; }
+  APOTHEM_INLINE Dual& operator-=(const Dual& b) { return *this = *this - b; }
+  friend APOTHEM_INLINE bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
+  friend APOTHEM_INLINE bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
+  friend APOTHEM_INLINE bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
+  friend APOTHEM_INLINE bool operator>=(const Dual& a, const Dual& b) { return a.v >= b.v; }
+  friend APOTHEM_INLINE bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
+};
+
+/// The root of 0 has no derivative: not a number.
+template <int n>
+APOTHEM_INLINE Dual<n> square_root(const Dual<n>& a) {
+  const double root = std::sqrt(a.v);
+  return {root, a.d / PackOf<n>(2 * root)};
+}
+
+}  // namespace apothem

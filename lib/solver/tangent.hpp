@@ -1,0 +1,30 @@
+// The tangent stiffness K = -dF/dx of all forces, which the terms add up entry by entry.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace apothem {
+
+/// Entries of a square matrix. Those of one place are summed in the order in which they have come,
+/// so that the sums have the same bits for any number of threads.
+class Tangent {
+ public:
+  struct Entry {
+    std::int32_t row, column;
+    double value;  ///< N/m, N or N m
+  };
+
+  void clear() { entries_.clear(); }
+  void add(size_t row, size_t column, double value) {
+    entries_.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(column), value});
+  }
+  [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace apothem
