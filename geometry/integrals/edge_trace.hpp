@@ -157,15 +157,17 @@ inline double heights(const PlacedPotential& x, const PlacedPotential& y, double
 }
 
 // Adds a linear piece of phi, limited to 1.
-inline void add_capped(double u1, double v1, double u2, double v2,
-                       SegmentMoments<double>& moments) {
-  if ((v1 > 1) == (v2 > 1)) {
-    moments.add(u1, std::min(v1, 1.0), u2, std::min(v2, 1.0));
+template <class Real>
+void add_capped(const Real& u1, const Real& v1, const Real& u2, const Real& v2,
+                SegmentMoments<Real>& moments) {
+  const Real one(1.);
+  if ((v1 > one) == (v2 > one)) {
+    moments.add(u1, std::min(v1, one), u2, std::min(v2, one));
     return;
   }
-  const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
-  moments.add(u1, std::min(v1, 1.0), u, 1);
-  moments.add(u, 1, u2, std::min(v2, 1.0));
+  const Real u = u1 + (one - v1) / (v2 - v1) * (u2 - u1);
+  moments.add(u1, std::min(v1, one), u, one);
+  moments.add(u, one, u2, std::min(v2, one));
 }
 
 /// The heights of the ends of edge e of x, which ends at vertex `end`, over the edges of y. They
@@ -209,8 +211,9 @@ inline PlacedDistance<double> placed_distance(const PlacedPotential& y) {
 }
 
 /// Adds a linear piece of phi of y, limited to 1 if y's potential is capped.
-inline void add_piece(const PlacedPotential& y, double u1, double v1, double u2, double v2,
-                      SegmentMoments<double>& moments) {
+template <class Real>
+void add_piece(const PlacedPotential& y, const Real& u1, const Real& v1, const Real& u2,
+               const Real& v2, SegmentMoments<Real>& moments) {
   if (y.capped) {
     add_capped(u1, v1, u2, v2, moments);
   } else {
@@ -224,22 +227,40 @@ APOTHEM_INLINE Vec2 arm(const PlacedPotential& a, const PlacedPotential& b, cons
           (a.reference.y() - b.reference.y()) + offset.y()};
 }
 
-/// Combines the integrals along the edges of a and of b to those of the pair, except for depth and
-/// breadth. `arm` is a's reference point relative to b's.
-APOTHEM_INLINE PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
-  PairIntegral pair;
-  pair.force = {of_b.fx - of_a.fx, of_b.fy - of_a.fy};
+/// The sums of a pair or of one of its patches, as in PairIntegral.
+template <class Real>
+struct PairSums {
+  Real fx, fy, moment_a, moment_b, weight, centre_x = 0, centre_y = 0;
+};
+
+/// Combines the integrals along the edges of a and of b. (rx, ry) is a's reference point relative
+/// to b's.
+template <class Real>
+APOTHEM_INLINE PairSums<Real> combine_sums(const EdgeSums<Real>& of_a, const EdgeSums<Real>& of_b,
+                                           const Real& rx, const Real& ry) {
   // Each moment is about the reference point of the polygon that owns phi. The arm moves it to the
   // reference point of the other polygon.
-  const double rx = arm.x();
-  const double ry = arm.y();
-  pair.moment_a = of_b.moment - (of_a.moment - (rx * of_a.fy - ry * of_a.fx));
-  pair.moment_b = of_a.moment - (of_b.moment + (rx * of_b.fy - ry * of_b.fx));
-  pair.weight = of_a.weight + of_b.weight;
-  if (pair.weight != 0) {
-    pair.centre = {(of_b.wx + (of_a.wx - rx * of_a.weight)) / pair.weight,
-                   (of_b.wy + (of_a.wy - ry * of_a.weight)) / pair.weight};
+  PairSums<Real> pair{.fx = of_b.fx - of_a.fx,
+                      .fy = of_b.fy - of_a.fy,
+                      .moment_a = of_b.moment - (of_a.moment - (rx * of_a.fy - ry * of_a.fx)),
+                      .moment_b = of_a.moment - (of_b.moment + (rx * of_b.fy - ry * of_b.fx)),
+                      .weight = of_a.weight + of_b.weight};
+  if (!(pair.weight == Real(0.))) {
+    pair.centre_x = (of_b.wx + (of_a.wx - rx * of_a.weight)) / pair.weight;
+    pair.centre_y = (of_b.wy + (of_a.wy - ry * of_a.weight)) / pair.weight;
   }
+  return pair;
+}
+
+/// The same as a PairIntegral, except for depth and breadth. `arm` is (rx, ry).
+APOTHEM_INLINE PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
+  const PairSums<double> sums = combine_sums<double>(of_a, of_b, arm.x(), arm.y());
+  PairIntegral pair;
+  pair.force = {sums.fx, sums.fy};
+  pair.moment_a = sums.moment_a;
+  pair.moment_b = sums.moment_b;
+  pair.weight = sums.weight;
+  pair.centre = {sums.centre_x, sums.centre_y};
   pair.inside_a = of_a.inside;
   pair.inside_b = of_b.inside;
   pair.own_length_a = of_a.length;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kUlps = 16;
 // Vertices that differ by more than this share of the polygon's size are never similar, however
 // coarse the coordinates are.
-constexpr double kFarthest = 1e-11;
+constexpr double kMostDistant = 1e-11;
 // Intervals of the logarithm of perimeter / size, and its error.
 constexpr double kInterval = 1e-6, kError = 1e-9;
 // Comparisons of vertices, per vertex, after which a polygon counts as an original. Only polygons
@@ -122,7 +122,7 @@ bool SimilarShapes::align_holes(const Shape& from, const Shape& to, double toler
 
 std::optional<Similarity> SimilarShapes::similarity(const Shape& from, const Shape& to) {
   const double scale = to.size / from.size;
-  const double tolerance = std::min(to.noise + scale * from.noise, kFarthest * to.extent);
+  const double tolerance = std::min(to.noise + scale * from.noise, kMostDistant * to.extent);
   const int n = static_cast<int>(from.arms.size());
   if (to.arms.size() != from.arms.size()) return std::nullopt;
   // The lengths of the arms tell soon that two polygons are not aligned.

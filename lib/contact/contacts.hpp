@@ -117,6 +117,12 @@ class Contacts {
   /// OutlineKernel::rate.
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_stiffness(std::span<double> nodes, std::span<double> rigid) const;
+  /// See Kernel::add_tangent.
+  bool add_tangent(size_t first_node, Tangent& tangent) const {
+    return std::ranges::all_of(kernels_, [&](const auto& kernel) {
+      return !kernel || kernel->add_tangent(first_node, tangent);
+    });
+  }
   /// The total contact force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
   /// Adds the magnitudes of the normal forces on each body, N.

@@ -17,6 +17,7 @@
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/surface/surfaces.hpp"
+#include "lib/solver/tangent.hpp"
 
 namespace apothem {
 
@@ -121,6 +122,13 @@ class Kernel {
   /// Adds the same bound as a stiffness to each node near another body, N/m. Each rigid body gets,
   /// for x, y and angle, the sum over the nodes near it, N/m and N m.
   virtual void add_stiffness(std::span<double> /*nodes*/, std::span<double> /*rigid*/) const {}
+
+  /// Adds the derivatives of minus the forces of the last evaluation, whose friction was tried, by
+  /// the coordinates: rigid body i has 3 i to 3 i + 2, node j first_node + 2 j and the next one.
+  /// Returns false if it does not know them.
+  virtual bool add_tangent(size_t /*first_node*/, Tangent& /*tangent*/) const {
+    return candidates() == 0;
+  }
 
   [[nodiscard]] virtual size_t candidates() const = 0;
   /// The total contact force on a deformable body, N.

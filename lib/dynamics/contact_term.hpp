@@ -61,7 +61,9 @@ class ContactTerm final : public Term {
 
   void forget_search() { contacts_.forget_search(); }
   [[nodiscard]] std::int64_t searches() const { return contacts_.searches(); }
-  bool add_tangent(const State& /*state*/, Tangent& /*tangent*/) const override { return false; }
+  bool add_tangent(const State& state, Tangent& tangent) const override {
+    return contacts_.add_tangent(state.layout.node(0), tangent);
+  }
   void add_stiffness(const State& /*state*/, NodeStiffness& stiffness) override {
     contacts_.add_stiffness(stiffness.contact, stiffness.rigid);
   }

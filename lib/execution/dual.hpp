@@ -3,6 +3,8 @@
 // law is written twice, and a tangent cannot disagree with its force.
 #pragma once
 
+#include <limits>
+
 #include "lib/execution/pack.hpp"
 
 namespace apothem {
@@ -40,6 +42,7 @@ struct Dual {
   friend APOTHEM_INLINE Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
   APOTHEM_INLINE Dual& operator+=(const Dual& b) { return *this = *this + b; }
   APOTHEM_INLINE Dual& operator-=(const Dual& b) { return *this = *this - b; }
+  APOTHEM_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
   friend APOTHEM_INLINE bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend APOTHEM_INLINE bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
   friend APOTHEM_INLINE bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
@@ -53,5 +56,23 @@ APOTHEM_INLINE Dual<n> square_root(const Dual<n>& a) {
   const double root = std::sqrt(a.v);
   return {root, a.d / PackOf<n>(2 * root)};
 }
+// The names by which kernels call the functions of other number types.
+template <int n>
+Dual<n> sqrt(const Dual<n>& a) {
+  return square_root(a);
+}
+template <int n>
+Dual<n> abs(const Dual<n>& a) {
+  return a.v < 0 ? -a : a;
+}
+template <int n>
+Dual<n> asinh(const Dual<n>& a) {
+  return {std::asinh(a.v), a.d / PackOf<n>(std::sqrt(1 + a.v * a.v))};
+}
 
 }  // namespace apothem
+
+template <int n>
+struct std::numeric_limits<apothem::Dual<n>> : std::numeric_limits<double> {
+  static apothem::Dual<n> infinity() { return std::numeric_limits<double>::infinity(); }
+};

@@ -11,6 +11,19 @@
 
 namespace apothem {
 
+/// The derivative of the force of a patch by the depth, for unit stiffness. The boundary of each
+/// body inside the other one has the extent `breadth` of the patch across the force; the ratio of
+/// its length to this extent says how it is inclined, and so how its potential, of the given slope,
+/// rises along the force. This is exact for flat faces and for corners against each other.
+template <class Real>
+APOTHEM_INLINE Real growth_of(const Real& breadth, const Real& length_a, const Real& slope_a,
+                              const Real& length_b, const Real& slope_b) {
+  const auto rise = [&](const Real& slope, const Real& length) APOTHEM_LAMBDA -> Real {
+    return slope * select(length > breadth, Real(breadth / length), Real(1.));
+  };
+  return breadth * (rise(slope_a, length_a) + rise(slope_b, length_b));
+}
+
 /// A patch and its bodies in a step.
 template <class Real>
 struct PatchStep {
@@ -20,10 +33,7 @@ struct PatchStep {
   VectorOf<Real> centre;
   Real slopes;  // length of each boundary in the patch times the slope of the other potential,
                 // summed
-  // The derivative of the force by the depth. The boundary of each body inside the other one has
-  // the extent of the patch across the force; the ratio of its length to this extent says how it is
-  // inclined, and so how its potential rises along the force. This is exact for flat faces and for
-  // corners against each other.
+  // The derivative of the force by the depth, see growth_of.
   Real growth;
   Real force_error;         // round-off error of the force, m
   VectorOf<Real> between;   // the mass centre of a minus that of b, m

@@ -94,11 +94,7 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
   const Real slope_b = four[3];
   p.slopes = length_a * slope_b + length_b * slope_a;
   integral(kBreadthNumbers);
-  const Real breadth = four[0];
-  const auto rise = [&](const Real& slope, const Real& length) APOTHEM_LAMBDA {
-    return slope * select(length > breadth, breadth / length, Real(1.));
-  };
-  p.growth = breadth * (rise(slope_a, length_a) + rise(slope_b, length_b));
+  p.growth = growth_of(four[0], length_a, slope_a, length_b, slope_b);
   read_between(surfaces, work, p.between);
   read_law(work, scene.thickness, p);
   p.find_direction();

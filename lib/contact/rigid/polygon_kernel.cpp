@@ -198,6 +198,29 @@ void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
   }
 }
 
+bool PolygonKernel::add_tangent(size_t /*first_node*/, Tangent& tangent) const {
+  PairDerivative derivative;
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const PairLaw& law = table_.between(pair.a, pair.b);
+    const PlacedPotential view_a = surfaces_.shapes().view(pair.a);
+    const PlacedPotential view_b = surfaces_.shapes().view(pair.b);
+    const Vec2 between = surfaces_.between(pair.a, pair.b);
+    std::span<const MovingIntegral> patches =
+        derivative.find(view_a, view_b, between, pairs_.segments(pair));
+    if (patches.empty()) patches = derivative.find(view_a, view_b, between, {});
+    for (size_t i = 0; i < patches.size(); ++i) {
+      TriedSpring spring;
+      const bool rubs = tangential_ && law.rough();
+      if (rubs && !tangential_->tried_spring(pair, i, spring)) return false;
+      add_pair_tangent(pair.a, pair.b,
+                       patch_force(surfaces_, thickness_, law, pair.a, pair.b, patches[i],
+                                   rubs ? &spring : nullptr),
+                       tangent);
+    }
+  }
+  return true;
+}
+
 void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
   PatchWorkspace workspace;
   PenetrationWorkspace penetration_workspace;

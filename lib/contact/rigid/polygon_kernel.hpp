@@ -47,6 +47,7 @@ class PolygonKernel final : public Kernel {
 
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
+  bool add_tangent(size_t first_node, Tangent& tangent) const override;
   void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(std::vector<ContactRecord>& records) const override;
   void fields(Archive& archive) override {

@@ -1,0 +1,30 @@
+// The tangent stiffness of the contact of two rigid bodies: the force of a patch, normal and
+// friction, with its derivatives (geometry/integrals/pair_derivative.hpp).
+#pragma once
+
+#include "geometry/integrals/pair_derivative.hpp"
+#include "lib/contact/law/friction_memory.hpp"
+#include "lib/contact/law/pair_table.hpp"
+#include "lib/contact/law/pair_vector.hpp"
+#include "lib/contact/surface/surfaces.hpp"
+#include "lib/solver/tangent.hpp"
+
+namespace apothem {
+
+/// The spring of a patch in the state that is tried, and in the one before.
+struct TriedSpring {
+  Spring now, before;
+};
+
+/// The force of a patch on bodies a and b with its derivatives, N and N m. `spring` is null without
+/// friction. `thickness` is in m.
+PairVectorOf<Moving> patch_force(const Surfaces& surfaces, double thickness, const PairLaw& law,
+                                 RigidIndex a, RigidIndex b, const MovingIntegral& patch,
+                                 const TriedSpring* spring);
+
+/// Adds minus the derivatives of the force between two rigid bodies; body i has the coordinates 3 i
+/// to 3 i + 2.
+void add_pair_tangent(RigidIndex a, RigidIndex b, const PairVectorOf<Moving>& force,
+                      Tangent& tangent);
+
+}  // namespace apothem
