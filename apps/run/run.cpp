@@ -40,11 +40,10 @@ std::string progress_of(const Run& run, double end, double seconds, bool bar) {
 
 void print_load_step(const Run& run) {
   const LoadStep& step = run.load_steps().back();
-  fmt::print(stderr,
-             "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g} on "
-             "\"{}\"\n",
-             run.state().step, run.scene().time.load_steps, step.iterations, step.residual,
-             step.imbalance, run.scene().model.name_of(step.worst));
+  fmt::print(stderr, "load step {} of {}: {} {}, residual {:.2g}, sum of forces {:.2g} on \"{}\"\n",
+             run.state().step, run.scene().time.load_steps, step.iterations,
+             step.relaxed ? "steps of relaxation" : "iterations", step.residual, step.imbalance,
+             run.scene().model.name_of(step.worst));
 }
 
 void print_summary(const Run& run) {

@@ -386,6 +386,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   const double steps = ramp(state.time, time);
   LoadStep result{time};
+  result.relaxed = true;
   std::int64_t step = 0;
   ++state.step;
   if (pause_ && pause_->until == time) {
@@ -480,6 +481,15 @@ void Equilibrium::fields(Archive& archive) {
   archive.sized("outside", outside_);
   archive("loads", loads_);
   archive.sized("body_loads", body_loads_);
+  bool on_the_way = newton_pause_.has_value();
+  archive("newton", on_the_way);
+  if (!on_the_way) {
+    newton_pause_.reset();
+  } else {
+    // Vectors of this size, which a checkpoint fills.
+    if (!newton_pause_) newton_pause_ = {.x_done = mass_, .base = mass_, .x = mass_};
+    archive("path", *newton_pause_);
+  }
   bool paused = pause_.has_value();
   archive("paused", paused);
   if (!paused) {

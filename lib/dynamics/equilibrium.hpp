@@ -51,9 +51,15 @@ class Equilibrium {
     double until = 0;                     // end of the load step, s
     double done = 0;                      // share of the load step that is in equilibrium
     double step = 1;                      // to the share that is sought
+    bool damped = false;                  // whether the way is one of implicit steps
+    double shift = 0;                     // 1/h^2 of the present one, 1/s^2
     std::int64_t iteration = 0, all = 0;  // in this share; in this load step
-    double residual = 0;                  // before the last iteration, N
-    std::vector<double> x_done, x;        // of the last equilibrium, and of the state that is tried
+    std::int64_t in_step = 0;             // in this implicit step
+    std::int64_t shortened = 0;           // implicit steps that were too long
+    double residual = 0, at_start = 0;    // before the last iteration; at the start of the step
+    std::vector<double> x_done, base, x;  // of the last equilibrium; at the start of the implicit
+                                          // step; of the state that is tried
+    void fields(Archive& archive);
   };
   enum class Verdict { found, failed, stopped };
   Verdict newton(State& state, const State& before, double time, const std::function<bool()>& stop,
@@ -61,8 +67,17 @@ class Equilibrium {
   Verdict find_share(State& state, const State& before, double time, NewtonPath& path,
                      const std::function<bool()>& stop, LoadStep& result);
   bool find_tangent(const State& state);
-  [[nodiscard]] double residual() const;
-  void refuse_unstable(const State& state);
+  bool find_step(State& state, const NewtonPath& path, bool first);
+  void put_walls_on_rails();
+  void go(State& state, const State& before, const NewtonPath& path);
+  void begin_longer_step(const State& state, NewtonPath& path);
+  bool begin_shorter_step(State& state, NewtonPath& path);
+  double shifted_residual(const State& state, const NewtonPath& path);
+  [[nodiscard]] double shortened(const std::vector<double>& step) const;
+  [[nodiscard]] double reach(size_t coordinate) const;
+  [[nodiscard]] double first_shift() const;
+  [[nodiscard]] std::int64_t most_iterations() const;
+  int negative_pivots(const State& state);
   void keep(bool complete, LoadStep& result);
   LoadStep solve(State& state, const State& before, double time, const std::function<bool()>& stop);
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);

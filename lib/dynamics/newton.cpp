@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/equilibrium.hpp"
 #include "lib/dynamics/unstable.hpp"
 
@@ -17,10 +18,26 @@ namespace {
 constexpr int kMostIterations = 30;   // for a share of a load step
 constexpr double kLeastShare = 1e-4;  // of a load step
 constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
+// Of the implicit steps by which contacts are found.
+constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 300, kMostHalvings = 6,
+              kMostShortened = 60;
+constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
+constexpr double kLonger = 3, kShorter = 5;
+constexpr double kReach = 0.5;    // of a rigid body's inradius
+constexpr double kNodeReach = 8;  // of the shortest edge
+// Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
+constexpr double kMeshGrowth = 100;
 // Pivots nearer to zero are round-off, of the largest one.
 constexpr double kPivotNoise = 1e-11;
 
 }  // namespace
+
+void Equilibrium::NewtonPath::fields(Archive& archive) {
+  archive("until", until)("done", done)("step", step)("damped", damped)("shift", shift);
+  archive("iteration", iteration)("all", all)("in_step", in_step)("shortened", shortened);
+  archive("residual", residual)("at_start", at_start);
+  archive.sized("x_done", x_done).sized("base", base).sized("x", x);
+}
 
 bool Equilibrium::find_tangent(const State& state) {
   tangent_.clear();
@@ -28,47 +45,118 @@ bool Equilibrium::find_tangent(const State& state) {
                              [&](const auto& term) { return term->add_tangent(state, tangent_); });
 }
 
-// The norm of the forces out of balance, N; moments count over the radius of their body.
-double Equilibrium::residual() const {
+// Steps of Newton's method along K + M/h^2 from the places `path.base`: those of an implicit Euler
+// step of h without velocities. Without a shift they lead to the equilibrium at once.
+double Equilibrium::shifted_residual(const State& state, const NewtonPath& path) {
   double sum = 0;
   for (size_t c = 0; c < rest_.size(); ++c) {
-    const double r = c < first_ && c % 3 == 2 ? rest_[c] / radius_[c / 3] : rest_[c];
-    sum += r * r;
+    if (held(c)) continue;
+    const double inertia = dofs_.mass(c);
+    drive_[c] = rest_[c] - path.shift * inertia * (state.x[c] - path.base[c]);
+    sum += drive_[c] * drive_[c] / inertia;
   }
   return std::sqrt(sum);
 }
 
-// One share of a load step, which ends at `time`.
+// The share of a step in which no point moves farther than its reach.
+double Equilibrium::shortened(const std::vector<double>& step) const {
+  double longest = 1;
+  for (size_t c = 0; c < step.size(); ++c)
+    longest = std::max(longest, std::abs(step[c]) / reach(c));
+  return 1 / longest;
+}
+
+// How far a coordinate moves in one iteration, so that no contact is jumped over, m or rad.
+double Equilibrium::reach(size_t c) const {
+  if (c >= first_) return kNodeReach * shortest_;
+  const double inradius = model_.bodies[c / 3].inradius;
+  return kReach * inradius / (c % 3 == 2 ? radius_[c / 3] : 1);
+}
+
+// The first shift: with it nothing moves farther than its reach by the forces out of balance.
+double Equilibrium::first_shift() const {
+  double shift = 0;
+  for (size_t c = 0; c < rest_.size(); ++c) {
+    if (!held(c)) shift = std::max(shift, std::abs(rest_[c]) / dofs_.mass(c) / reach(c));
+  }
+  return shift;
+}
+
+// K + M/h^2 at the present places, and its solution. In the first iteration of a share prescribed
+// coordinates come to their new places by their columns of K.
+bool Equilibrium::find_step(State& state, const NewtonPath& path, bool first) {
+  if (!find_tangent(state)) return false;
+  step_ = drive_;
+  std::ranges::fill(moves_, 0.);
+  if (first) {
+    const std::vector<double> places = state.x;
+    dofs_.place_driven(state);
+    for (size_t c = 0; c < places.size(); ++c) moves_[c] = state.x[c] - places[c];
+    for (const Tangent::Entry& e : tangent_.entries()) {
+      step_[static_cast<size_t>(e.row)] -= e.value * moves_[static_cast<size_t>(e.column)];
+    }
+  }
+  for (size_t c = 0; c < step_.size(); ++c) shift_[c] = path.shift * dofs_.mass(c);
+  put_walls_on_rails();
+  for (const RigidIndex wall : walls_) {
+    const size_t c = 3 * static_cast<size_t>(wall);
+    const Vec2& along = model_.bodies[wall].servo->direction;
+    step_[c] = along.dot(Vec2(step_[c], step_[c + 1]));
+  }
+  if (!solver_.factorise(tangent_, free_, shift_)) return false;
+  solver_.solve(step_, step_);
+  for (const RigidIndex wall : walls_) {
+    const size_t c = 3 * static_cast<size_t>(wall);
+    const Vec2& along = model_.bodies[wall].servo->direction;
+    step_[c + 1] = along.y() * step_[c];
+    step_[c] = along.x() * step_[c];
+  }
+  return true;
+}
+
+// Says which coordinates the system has. A wall that holds a force has one, along its direction:
+// the x of its place.
+void Equilibrium::put_walls_on_rails() {
+  for (size_t c = 0; c < free_.size(); ++c) free_[c] = !held(c);
+  for (const RigidIndex wall : walls_) {
+    const size_t c = 3 * static_cast<size_t>(wall);
+    const Vec2& along = model_.bodies[wall].servo->direction;
+    tangent_.put_on_rail(c, along.x(), along.y());
+    free_[c + 1] = 0;
+  }
+}
+
+// One share of a load step, which ends at `time`. With a shift it is found in steps of growing h.
 Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, double time,
                                              NewtonPath& path, const std::function<bool()>& stop,
                                              LoadStep& result) {
   for (;; ++path.iteration, ++path.all) {
     state.time = time;
     find_forces(state, before);
-    const double residual_now = residual();
-    if (!std::isfinite(residual_now)) return Verdict::failed;
-    if (path.iteration > 0) {
-      const bool good = reached(state, result);
-      const bool falls = residual_now < kFalling * path.residual;
-      if (good && !falls) return Verdict::found;
-    }
-    path.residual = residual_now;
-    if (path.iteration == kMostIterations || !find_tangent(state)) return Verdict::failed;
-    step_ = rest_;
-    std::ranges::fill(moves_, 0.);
     if (path.iteration == 0) {
-      std::vector<double> places = state.x;
-      dofs_.place_driven(state);
-      for (size_t c = 0; c < places.size(); ++c) moves_[c] = state.x[c] - places[c];
-      for (const Tangent::Entry& e : tangent_.entries()) {
-        step_[static_cast<size_t>(e.row)] -= e.value * moves_[static_cast<size_t>(e.column)];
-      }
+      path.base = state.x;
+      if (path.damped) path.shift = first_shift();
+      path.in_step = 0;
     }
-    for (size_t c = 0; c < step_.size(); ++c) free_[c] = !held(c);
-    std::ranges::fill(shift_, 0.);
-    if (!solver_.factorise(tangent_, free_, shift_)) return Verdict::failed;
-    solver_.solve(step_, step_);
-    for (size_t c = 0; c < step_.size(); ++c) state.x[c] += step_[c];
+    double now = shifted_residual(state, path);
+    if (!std::isfinite(now)) return Verdict::failed;
+    if (path.iteration > 0 && reached(state, result) && !(now < kFalling * path.residual)) {
+      return Verdict::found;
+    }
+    if (path.damped && path.in_step > 0 && now <= kStepTolerance * path.at_start) {
+      begin_longer_step(state, path);
+      now = shifted_residual(state, path);
+    }
+    if (path.in_step == 0) path.at_start = now;
+    path.residual = now;
+    const int most = path.damped ? kMostInStep : kMostIterations;
+    if (path.in_step == most || path.all > most_iterations()) {
+      if (!path.damped || !begin_shorter_step(state, path)) return Verdict::failed;
+      continue;
+    }
+    if (!find_step(state, path, path.iteration == 0)) return Verdict::failed;
+    ++path.in_step;
+    go(state, before, path);
     if (stop && stop()) {
       ++path.iteration, ++path.all;
       return Verdict::stopped;
@@ -76,19 +164,58 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
   }
 }
 
+// The friction of meshes has no exact tangent: if it does not converge soon, relaxation is faster.
+std::int64_t Equilibrium::most_iterations() const {
+  const bool slides = contact_ && contact_->dissipates() && !model_.deformables.empty();
+  return slides ? kMostOfSlides : kMostOfAll;
+}
+
+// Goes the step; where contacts may begin or end it is halved until the residual falls.
+void Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
+  double share = path.damped ? shortened(step_) : 1;
+  const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
+  const std::vector<double> from = state.x;
+  for (int halved = 0;; ++halved, share /= 2) {
+    for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
+    if (!path.damped || path.iteration == 0 || halved == kMostHalvings) return;
+    find_forces(state, before);
+    if (shifted_residual(state, path) < growth * path.residual) return;
+  }
+}
+
+void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
+  path.base = state.x;
+  path.shift /= kLonger * kLonger;
+  path.in_step = 0;
+}
+
+// Again from where the step began.
+bool Equilibrium::begin_shorter_step(State& state, NewtonPath& path) {
+  if (++path.shortened > kMostShortened) return false;
+  state.x = path.base;
+  dofs_.place_driven(state);
+  path.shift *= kShorter * kShorter;
+  path.in_step = 0;
+  return true;
+}
+
 Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, double time,
                                          const std::function<bool()>& stop, LoadStep& result) {
+  // What tells round-off depends on what is near at the start of the load step, and on nothing
+  // else.
+  if (contact_) contact_->forget_search();
+  find_forces(state, before);
+  find_masses(state);
+  if (!find_tangent(state)) return Verdict::failed;
   NewtonPath path;
+  path.until = time;
+  path.damped = contact_ != nullptr;
+  path.x_done = state.x;
   if (newton_pause_ && newton_pause_->until == time) {
     path = std::move(*newton_pause_);
     state.x = path.x;
-  } else {
-    path.until = time;
-    path.x_done = state.x;
   }
   newton_pause_.reset();
-  find_forces(state, before);
-  find_masses(state);
   for (;;) {
     const double share = std::min(1., path.done + path.step);
     const double at = share < 1 ? before.time + share * (time - before.time) : time;
@@ -117,19 +244,17 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
     if (path.step < kLeastShare || time == before.time) return Verdict::failed;
   }
   result.iterations = path.all;
-  refuse_unstable(state);
+  result.negative_pivots = negative_pivots(state);
   return Verdict::found;
 }
 
-void Equilibrium::refuse_unstable(const State& state) {
-  if (!find_tangent(state) || !solver_.factorise(tangent_, free_, shift_)) return;
-  const int negative = solver_.negative_pivots(kPivotNoise);
-  if (negative <= 0) return;
-  throw Unstable(fmt::format(
-      "the equilibrium at t = {:.9g} s (load step {}) is unstable: its tangent stiffness has {} "
-      "negative pivot{}, as many as there are ways to fall from it; reduce the load, or give the "
-      "body a small imperfection, with which it buckles",
-      state.time, state.step, negative, negative == 1 ? "" : "s"));
+// Of the tangent at the present places; -1 where that is not symmetric, and they do not tell.
+int Equilibrium::negative_pivots(const State& state) {
+  std::ranges::fill(shift_, 0.);
+  if (!find_tangent(state)) return -1;
+  put_walls_on_rails();
+  if (!solver_.factorise(tangent_, free_, shift_)) return -1;
+  return solver_.negative_pivots(kPivotNoise);
 }
 
 }  // namespace apothem

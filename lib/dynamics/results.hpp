@@ -53,12 +53,15 @@ struct ContactCounts {
 /// How the equilibrium of a load step was found.
 struct LoadStep {
   double time = 0;              ///< s
-  std::int64_t iterations = 0;  ///< steps of dynamic relaxation
-  double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
-  double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
-  BodyIndex worst = -1;         ///< the body with that imbalance
-  BodyIndex unbalanced = -1;    ///< the body with most of the residual
-  double load = 0;              ///< sum of the sizes of all weights, loads and reactions, N
+  std::int64_t iterations = 0;  ///< of Newton's method, or steps of dynamic relaxation
+  bool relaxed = false;         ///< true if it was found by dynamic relaxation
+  /// Of the tangent stiffness: the number of ways to fall from the equilibrium; -1 if not known.
+  int negative_pivots = -1;
+  double residual = 0;        ///< norm of the nodal forces out of balance / norm of the loads
+  double imbalance = 0;       ///< largest sum of the forces on a body / sum of their sizes
+  BodyIndex worst = -1;       ///< the body with that imbalance
+  BodyIndex unbalanced = -1;  ///< the body with most of the residual
+  double load = 0;            ///< sum of the sizes of all weights, loads and reactions, N
   /// Size of the sum of all forces on each body, rigid ones first, N. Of a rigid body with that of
   /// the moments over its radius; 0 where it is not free.
   std::vector<double> off{};
@@ -66,7 +69,8 @@ struct LoadStep {
 
   void fields(Archive& archive) {
     archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(
-        "worst", worst)("load", load)("off", off);
+        "worst", worst)("load", load)("off", off)("relaxed", relaxed)("negative_pivots",
+                                                                      negative_pivots);
   }
 };
 

@@ -56,6 +56,10 @@ APOTHEM_INLINE Dual<n> square_root(const Dual<n>& a) {
   const double root = std::sqrt(a.v);
   return {root, a.d / PackOf<n>(2 * root)};
 }
+template <int n>
+APOTHEM_INLINE double real_part(const Dual<n>& a) {
+  return a.v;
+}
 // The names by which kernels call the functions of other number types.
 template <int n>
 Dual<n> sqrt(const Dual<n>& a) {

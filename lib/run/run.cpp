@@ -302,7 +302,7 @@ Run::Status Run::finish() {
   // A run that has become unstable has said enough.
   if (status_ != Status::unstable) {
     note_failures([&] { close(); });
-    for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
+    for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes(), load_steps())) {
       warn(std::move(sentence));
     }
   }

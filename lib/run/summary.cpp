@@ -53,6 +53,8 @@ void add_load_steps(Json& json, const Run& run) {
   for (const LoadStep& s : run.load_steps()) {
     found.push_back({{"time", s.time},
                      {"iterations", s.iterations},
+                     {"method", s.relaxed ? "relaxation" : "newton"},
+                     {"negative_pivots", s.negative_pivots < 0 ? Json() : Json(s.negative_pivots)},
                      {"residual", s.residual},
                      {"imbalance", s.imbalance},
                      {"of", model.name_of(s.worst)}});

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lib/model/inradius.hpp"
 
 namespace apothem {
@@ -36,10 +38,26 @@ void warn_of_energy(const Extremes& extremes, std::vector<std::string>& warnings
       extremes.energy_error, extremes.energy_in_play));
 }
 
+// An equilibrium may be found that no body would stay in.
+void warn_of_instability(std::span<const LoadStep> steps, std::vector<std::string>& warnings) {
+  const auto unstable = [](const LoadStep& step) { return step.negative_pivots > 0; };
+  const auto first = std::ranges::find_if(steps, unstable);
+  if (first == steps.end()) return;
+  const auto more = std::count_if(first + 1, steps.end(), unstable);
+  warnings.push_back(fmt::format(
+      "the equilibrium at t = {:.6g} s{} is unstable: its tangent stiffness has {} negative "
+      "pivot{}, one for each way to fall from it; support the body, reduce the load, or give it an "
+      "imperfection with which it buckles",
+      first->time, more > 0 ? fmt::format(", like those of {} later load steps,", more) : "",
+      first->negative_pivots, first->negative_pivots == 1 ? "" : "s"));
+}
+
 }  // namespace
 
-std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes) {
+std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes,
+                                     std::span<const LoadStep> steps) {
   std::vector<std::string> warnings;
+  warn_of_instability(steps, warnings);
   warn_of_energy(extremes, warnings);
   warn_of_penetration(model, extremes.relative_penetration, warnings);
   return warnings;

@@ -2,6 +2,7 @@
 // seem. Such warnings are printed at the end of a run and stand in run.json.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 namespace apothem {
 
 /// One whole sentence for each reason to doubt; each names the remedy.
-std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes);
+std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes,
+                                     std::span<const LoadStep> steps);
 
 }  // namespace apothem

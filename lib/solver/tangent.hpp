@@ -21,6 +21,21 @@ class Tangent {
   void add(size_t row, size_t column, double value) {
     entries_.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(column), value});
   }
+  /// Joins the coordinates c and c + 1 of a point to one, c, that moves it along the vector (x, y).
+  void put_on_rail(size_t c, double x, double y) {
+    const auto first = static_cast<std::int32_t>(c);
+    for (Entry& entry : entries_) {
+      for (std::int32_t Entry::*const place : {&Entry::row, &Entry::column}) {
+        if (entry.*place == first) {
+          entry.value *= x;
+        } else if (entry.*place == first + 1) {
+          entry.value *= y;
+          entry.*place = first;
+        }
+      }
+    }
+  }
+
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
 
  private:

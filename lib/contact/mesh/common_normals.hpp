@@ -39,6 +39,7 @@ struct SpringContact {
   double pressed = 0;     ///< normal force that counts for friction, N
   double resistance = 0;  ///< stiffness along the normal, N/m
   double stiffness = 0;   ///< stiffness of the spring, N/m
+  double followed = 0;    ///< the same times the part of the slip that it follows, N/m
   double friction = 0;    ///< force of the spring on the edge along (-ny, nx), N
   double drag = 0, push = 0;  ///< forces of the dashpots along the tangent and along the normal, N
 };

@@ -148,7 +148,11 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
       const CoulombSpring<double> spring{
           contact.stiffness, step.limited ? friction_limit(coefficient, pressed) : HUGE_VAL};
       double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
-      if (step.finite && !contact.is_old) slip *= closed_fraction(step, unit, group, contact);
+      contact.followed = contact.stiffness;
+      if (step.finite && !contact.is_old) {
+        const double fraction = closed_fraction(step, unit, group, contact);
+        slip *= fraction, contact.followed *= fraction;
+      }
       contact.friction = spring.after(contact.force_before, slip * step.dt);
       energy += spring_energy(contact.friction, contact.stiffness);
       worker.springs.push_back({.key = key_of(group),
@@ -343,24 +347,27 @@ void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematic
                   pair.tangential_time * contact.stiffness,
                   contact.friction,
                   law.friction.coefficient});
-    add_coordinates(blocks, unit, group, contact, dashpots);
+    const OutlineSurfaces& o = outlines_;
+    each_coordinate(blocks, unit, group, contact,
+                    [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
+                      const OutlineSurfaces::Body& body = o.bodies[o.body[vertex]];
+                      if (body.is_rigid()) {
+                        dashpots.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy),
+                                           normal, tangential);
+                      } else {
+                        dashpots.add_node(o.node[vertex], normal, tangential);
+                      }
+                    });
   });
 }
 
-// Adds the contributions of the vertices to the rates along the normal and the tangent.
-void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
+// Calls add(vertex, normal, tangential) for what the vertices contribute to the rates along the
+// normal and the tangent.
+template <class Add>
+void OutlineFriction::each_coordinate(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                                       const EdgeFaceGroup& group, const SpringContact& contact,
-                                      Dashpots& dashpots) const {
-  const OutlineSurfaces& o = outlines_;
+                                      const Add& add) const {
   const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
-  const auto add = [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
-    const OutlineSurfaces::Body& body = o.bodies[o.body[vertex]];
-    if (body.is_rigid()) {
-      dashpots.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
-    } else {
-      dashpots.add_node(o.node[vertex], normal, tangential);
-    }
-  };
   blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
     const EdgeFaceBlock& block = blocks.blocks()[i];
     const EdgeFaceTouch& touch = blocks.touches()[i];
@@ -377,6 +384,28 @@ void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFa
     add(block.a[lane], at_a * n + turned(n), at_a * t + turned(t));
     add(block.b[lane], -(at_b * n + turned(n)), -(at_b * t + turned(t)));
   });
+}
+
+void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
+                                  Tangent& tangent) const {
+  constexpr double kAtLimit = 1e-12;
+  CoordinateSum along;
+  for (const EdgeFaceUnit& unit : blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+      const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
+      if (!law.rough() || !(contact.normal > 0)) continue;
+      const double limit = friction_limit(law.friction.coefficient, contact.pressed);
+      if (!(std::abs(contact.friction) < (1 - kAtLimit) * limit)) continue;
+      along.clear();
+      each_coordinate(blocks, unit, groups[g], contact,
+                      [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {
+                        along.add(coordinates_of(outlines_, first_node, vertex), tangential);
+                      });
+      along.add_square(contact.followed, tangent);
+    }
+  }
 }
 
 void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots,

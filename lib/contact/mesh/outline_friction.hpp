@@ -15,6 +15,7 @@
 #include "lib/contact/mesh/common_normals.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/mesh/outline_slip.hpp"
+#include "lib/contact/mesh/outline_tangent.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 #include "lib/execution/parallel.hpp"
 
@@ -46,6 +47,11 @@ class OutlineFriction {
   void add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now, Dashpots& dashpots);
   void keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots, size_t& next,
                    FrictionMemory& memory);
+
+  /// Adds the tangent of the springs of the last update that stick. It is an approximation, and
+  /// symmetric: that springs which slide follow the normal force, and that the common normals turn,
+  /// does not count. Newton's method then takes more iterations, which are cheaper.
+  void add_tangent(const EdgeFaceBlocks& blocks, size_t first_node, Tangent& tangent) const;
 
   /// The force of the springs on a vertex, N.
   [[nodiscard]] Vec2 force(int vertex) const {
@@ -88,9 +94,10 @@ class OutlineFriction {
   [[nodiscard]] double pull(const Step& step, const EdgeFaceUnit& unit, FrictionWorkspace& worker,
                             bool divided);
   void find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now);
-  void add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
+  template <class Add>
+  void each_coordinate(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                        const EdgeFaceGroup& group, const SpringContact& contact,
-                       Dashpots& dashpots) const;
+                       const Add& add) const;
   template <class F>
   void each_dashpot(const EdgeFaceBlocks& blocks, const F& f);
 

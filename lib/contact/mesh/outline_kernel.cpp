@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/contact/law/stiffness.hpp"
+#include "lib/contact/mesh/outline_tangent.hpp"
 #include "lib/execution/dispatch.hpp"
 
 namespace apothem {
@@ -334,6 +335,21 @@ Resultant OutlineKernel::resultant(BodyIndex b) const {
     sum.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
   }
   return sum;
+}
+
+// Every block in which an edge meets a face has forces, also where that is no contact.
+bool OutlineKernel::add_tangent(size_t first_node, Tangent& tangent) const {
+  for (size_t i = 0; i < blocks_.blocks().size(); ++i) {
+    if (blocks_.met()[i] == 0) continue;
+    const EdgeFaceBlock& block = blocks_.blocks()[i];
+    for (unsigned m = block.lanes; m != 0; m &= m - 1) {
+      const auto lane = static_cast<size_t>(std::countr_zero(m));
+      add_edge_face_tangent(outlines_, first_node, block.p[lane], block.a[lane], block.slope[lane],
+                            tangent);
+    }
+  }
+  if (friction_) friction_->add_tangent(blocks_, first_node, tangent);
+  return true;
 }
 
 void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {

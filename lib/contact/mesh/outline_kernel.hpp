@@ -69,6 +69,7 @@ class OutlineKernel final : public Kernel {
   void add_stiffness(std::span<double> nodes, std::span<double> rigid) const override;
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
+  bool add_tangent(size_t first_node, Tangent& tangent) const override;
   void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(std::vector<ContactRecord>& records) const override {
     add_patch_records(state(), records);

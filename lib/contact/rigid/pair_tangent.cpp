@@ -32,36 +32,46 @@ PatchStep<Moving> step_of(const Surfaces& surfaces, double thickness, const Pair
   return p;
 }
 
-// The force of a friction spring. The slip is that of the material at the loading point.
-Moving friction(const PatchStep<Moving>& p, const TriedSpring& spring) {
-  const Spring &now = spring.now, &before = spring.before;
-  const Moving limit = friction_limit(p.coefficient, Moving(p.normal_stiffness * p.size));
-  if (std::abs(now.force) >= (1 - kAtLimit) * limit.v) return now.force < 0 ? -limit : limit;
-  Moving slip(0.);
-  const double tx = -p.normal.y.v, ty = p.normal.x.v;
-  const double px = p.point.x.v, py = p.point.y.v;
-  const double qx = px + p.between.x.v, qy = py + p.between.y.v;
-  slip.d.v[0] = tx, slip.d.v[1] = ty;
-  slip.d.v[2] = px * ty - py * tx, slip.d.v[3] = -(qx * ty - qy * tx);
-  const Moving k = p.tangential_stiffness();
-  if (!(k.v > 0)) return now.force;
-  // The trial force is kept - k times the slip so far.
-  const Moving kept =
-      k.v < before.stiffness ? k / Moving(before.stiffness) * before.force : Moving(before.force);
-  const double so_far = (kept.v - now.force) / k.v;
-  return kept - k * (slip + Moving(so_far));
+// What `rub` needs besides.
+void set_memory(const TriedFriction& friction, PatchStep<Moving>& p) {
+  const PairRate& rate = friction.rate;
+  const double dt = friction.dt;
+  p.rate = {rate.x, rate.y, rate.a, rate.b};
+  p.rate.x.d.v[0] = p.rate.y.d.v[1] = p.rate.a.d.v[2] = p.rate.b.d.v[3] = 1 / dt;
+  p.force_error = 0;
+  p.begins = friction.begins;
+  p.push = friction.now.push;
+  if (friction.before) {
+    const PairForce& f = friction.before->on_bodies;
+    p.spring = friction.before->force;
+    p.stiffness_before = friction.before->stiffness;
+    p.friction_before = {f.x, f.y, f.a, f.b};
+    return;
+  }
+  // The spring before is one that the slip brings to its present force, or beyond the limit.
+  const double k = p.tangential_stiffness().v;
+  const double slip = p.slip(p.rate).dot(p.normal.turned()).v;
+  const double limit = friction_limit(p.coefficient.v, (p.normal_stiffness * p.size).v);
+  double force = friction.now.force + k * slip * closed_fraction(p, dt).v * dt;
+  if (std::abs(friction.now.force) >= (1 - kAtLimit) * limit) force += friction.now.force;
+  p.spring = force;
+  p.stiffness_before = k;
+  p.friction_before = p.force_at_point(p.spring * p.normal.turned());
 }
 
 }  // namespace
 
 PairVectorOf<Moving> patch_force(const Surfaces& surfaces, double thickness, const PairLaw& law,
                                  RigidIndex a, RigidIndex b, const MovingIntegral& patch,
-                                 const TriedSpring* spring) {
-  const PatchStep<Moving> p = step_of(surfaces, thickness, law, a, b, patch);
+                                 const TriedFriction* friction) {
+  PatchStep<Moving> p = step_of(surfaces, thickness, law, a, b, patch);
   const Moving& k = p.normal_stiffness;
   const PairVectorOf<Moving> normal{k * p.force.x, k * p.force.y, k * p.moment_a, k * p.moment_b};
-  if (!spring || !p.has_direction) return normal;
-  return normal + p.force_at_point(friction(p, *spring) * p.normal.turned());
+  if (!friction || !p.has_direction) return normal;
+  set_memory(*friction, p);
+  PatchFriction<Moving> rubbed;
+  rub(p, friction->dt, rubbed);
+  return normal + rubbed.force;
 }
 
 void add_pair_tangent(RigidIndex a, RigidIndex b, const PairVectorOf<Moving>& force,

@@ -11,16 +11,21 @@
 
 namespace apothem {
 
-/// The spring of a patch in the state that is tried, and in the one before.
-struct TriedSpring {
-  Spring now, before;
+/// The friction of a patch in the state that is tried.
+struct TriedFriction {
+  Spring now;
+  /// The spring before the trial; null in pairs with several patches, where it is not known.
+  const Spring* before;
+  bool begins;    ///< true if the pair had no patch before
+  PairRate rate;  ///< displacements over dt
+  double dt;      ///< s
 };
 
-/// The force of a patch on bodies a and b with its derivatives, N and N m. `spring` is null without
-/// friction. `thickness` is in m.
+/// The force of a patch on bodies a and b with its derivatives, N and N m. `friction` is null
+/// without it. `thickness` is in m.
 PairVectorOf<Moving> patch_force(const Surfaces& surfaces, double thickness, const PairLaw& law,
                                  RigidIndex a, RigidIndex b, const MovingIntegral& patch,
-                                 const TriedSpring* spring);
+                                 const TriedFriction* friction);
 
 /// Adds minus the derivatives of the force between two rigid bodies; body i has the coordinates 3 i
 /// to 3 i + 2.

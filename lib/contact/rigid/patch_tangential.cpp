@@ -109,16 +109,15 @@ double PatchTangential::spring_in(const PairInTouch& pair, size_t patch) const {
   return patch < springs.size() ? springs[patch].force : 0;
 }
 
-bool PatchTangential::tried_spring(const PairInTouch& pair, size_t patch,
-                                   TriedSpring& spring) const {
+bool PatchTangential::tried(const PairInTouch& pair, size_t patch, TriedFriction& friction) const {
   if (per_edge_) return false;
   const std::span<const Spring> now = springs_of(pair);
+  if (patch >= now.size()) return false;
   const std::span<const Spring> before =
       records_of_pair(memory_.springs_before(), {polygon_kernel, pair.a, pair.b, 0});
-  if (patch >= now.size()) return false;
-  // Where several patches have been, which of them this one comes from does not matter to Newton's
-  // method: the slip so far is little.
-  spring = {now[patch], before.size() == 1 && now.size() == 1 ? before[0] : now[patch]};
+  const bool alone = now.size() == 1 && before.size() <= 1;
+  friction = {now[patch], alone ? before.empty() ? &kNoSpring : before.data() : nullptr,
+              before.empty(), pair_rate(kinematics_, pair.a, pair.b), scene_.dt};
   return true;
 }
 

@@ -49,9 +49,9 @@ class PatchTangential {
   [[nodiscard]] std::optional<PairForce> friction_before(RigidIndex a, RigidIndex b) const {
     return friction_of(a, b, memory_.springs_before(), memory_.segments().before());
   }
-  /// The spring in a patch after a trial, for its tangent. False with the law per_edge, whose
+  /// The friction in a patch after a trial, for its tangent. False with the law per_edge, whose
   /// springs do not belong to patches.
-  [[nodiscard]] bool tried_spring(const PairInTouch& pair, size_t patch, TriedSpring& spring) const;
+  [[nodiscard]] bool tried(const PairInTouch& pair, size_t patch, TriedFriction& friction) const;
   /// The force of the spring in a patch, N.
   [[nodiscard]] double spring_in(const PairInTouch& pair, size_t patch) const;
   /// Stores the force of the dashpot in a patch, N, for the next step.

@@ -209,12 +209,12 @@ bool PolygonKernel::add_tangent(size_t /*first_node*/, Tangent& tangent) const {
         derivative.find(view_a, view_b, between, pairs_.segments(pair));
     if (patches.empty()) patches = derivative.find(view_a, view_b, between, {});
     for (size_t i = 0; i < patches.size(); ++i) {
-      TriedSpring spring;
+      TriedFriction friction;
       const bool rubs = tangential_ && law.rough();
-      if (rubs && !tangential_->tried_spring(pair, i, spring)) return false;
+      if (rubs && !tangential_->tried(pair, i, friction)) return false;
       add_pair_tangent(pair.a, pair.b,
                        patch_force(surfaces_, thickness_, law, pair.a, pair.b, patches[i],
-                                   rubs ? &spring : nullptr),
+                                   rubs ? &friction : nullptr),
                        tangent);
     }
   }
