@@ -278,6 +278,12 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
       ->check(kDecimal)
       ->needs(cells)
       ->capture_default_str();
+  sub->add_flag("--convex", o.voronoi.convex, "Cut cells that are not convex")->needs(cells);
+  sub->add_option("--smallest-angle", o.voronoi.smallest_angle,
+                  "Move nodes until no angle is below it where possible; 0 to pi/3, in rad")
+      ->check(kDecimal)
+      ->needs(cells)
+      ->capture_default_str();
   sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
   add(sub, "-o,--output", o.output, "FILE",
       "JSON file (default: standard output for Voronoi cells, none for a mesh)");

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "apps/commands.hpp"
+#include "geometry/meshing/cell_shapes.hpp"
 #include "lib/mesh/boundary.hpp"
 #include "lib/mesh/fill_mesh.hpp"
 #include "lib/mesh/measure.hpp"
@@ -41,6 +42,12 @@ std::string range(double from, double to, const char* unit) {
   return fmt::format("{0:.6g} {2} to {1:.6g} {2}", from, to, unit);
 }
 
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::string degrees(double smallest, double largest) {
+  return range(smallest / kDegree, largest / kDegree, "degrees");
+}
+
 std::string summary(const Polygon& region, const VoronoiMesh& voronoi, const PolygonMesh& mesh) {
   double shortest = HUGE_VAL, longest = 0;
   double smallest = HUGE_VAL, largest = 0, sum = 0;
@@ -67,14 +74,25 @@ std::string summary(const Polygon& region, const VoronoiMesh& voronoi, const Pol
                            voronoi.short_edges.collapsed, voronoi.short_edges.left));
   say("areas", fmt::format("{}, mean {:.6g} m^2", range(smallest, largest, "m^2"), mean));
   say("area defect", fmt::format("{:.2g} of the region", std::abs(sum - whole) / whole));
+  const Mesh elements = mesh_of_cells(region, mesh);
+  const MeshQuality q = mesh_quality(elements);
+  double own = HUGE_VAL;
+  for (int i = 0; i < region.size(); ++i) {
+    own = std::min(own, corner_angle(region[i] - region.before(i), region.after(i) - region[i]));
+  }
+  say("angles", fmt::format("{}; smallest of the region {:.6g} degrees",
+                            degrees(q.smallest_angle, q.largest_angle), own / kDegree));
+  say("edge/apothem", fmt::format("{:.4g} or more", smallest_edge_ratio(elements)));
+  say("not convex", fmt::format("{} of {} cells", q.not_convex, mesh.cells.size()));
+  const size_t parts = mesh.cells.size() - voronoi.sites.size() - voronoi.cuts;
+  if (parts > 0) say("parts", fmt::format("{} cells without a site", parts));
+  if (voronoi.cuts > 0) say("cuts", fmt::format("{} at reflex corners", voronoi.cuts));
   if (voronoi.joined_pieces > 0) {
     say("joined",
         fmt::format("{} pieces that the outline cuts from their cell", voronoi.joined_pieces));
   }
   return text;
 }
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string description(const Mesh& mesh) {
   const MeshQuality q = mesh_quality(mesh);
@@ -85,7 +103,9 @@ std::string description(const Mesh& mesh) {
       line("edges", range(q.shortest_edge, q.longest_edge, "m")) +
       line("areas", fmt::format("{}, sum {:.6g} m^2", range(q.smallest_area, q.largest_area, "m^2"),
                                 q.area)) +
-      line("angles", range(q.smallest_angle / kDegree, q.largest_angle / kDegree, "degrees")) +
+      line("angles", degrees(q.smallest_angle, q.largest_angle)) +
+      line("edge/apothem", fmt::format("{:.4g} or more", smallest_edge_ratio(mesh))) +
+      line("not convex", fmt::format("{} elements", q.not_convex)) +
       line("Jacobian", fmt::format("{:.4g} or more, scaled (1: best)", q.smallest_scaled_jacobian));
   for (const MeshGroup& group : mesh.groups) {
     text +=
@@ -112,6 +132,8 @@ nlohmann::json description_json(const Mesh& mesh) {
           {"areas", {q.smallest_area, q.largest_area}},
           {"edges", {q.shortest_edge, q.longest_edge}},
           {"angles", {q.smallest_angle, q.largest_angle}},
+          {"smallest_edge_ratio", smallest_edge_ratio(mesh)},
+          {"not_convex", q.not_convex},
           {"smallest_scaled_jacobian", q.smallest_scaled_jacobian},
           {"groups", groups}};
 }
@@ -131,9 +153,13 @@ void make_cells(const MeshOptions& options) {
     const Polygon region = polygon_of_file(options.file);
     const VoronoiMesh voronoi = voronoi_mesh(region, options.voronoi);
     const PolygonMesh mesh = in_world(region, voronoi.mesh);
+    const Rings rings = rings_of(region);
+    std::string holes;
+    for (size_t i = 1; i < rings.size(); ++i) holes += (i > 1 ? ",\n" : "") + rows(rings[i]);
+    if (!holes.empty()) holes = "\"holes\": [\n" + holes + "\n],\n";
     const std::string json =
-        fmt::format("{{\n\"region\": {},\n\"points\": {},\n\"cells\": {}\n}}\n",
-                    rows(region.vertices()), rows(mesh.points), rows(mesh.cells));
+        fmt::format("{{\n\"region\": {},\n{}\"points\": {},\n\"cells\": {}\n}}\n", rows(rings[0]),
+                    holes, rows(mesh.points), rows(mesh.cells));
     if (!options.output.empty()) write_file(options.output, json);
     if (!options.vtk.empty()) write_mesh(options.vtk, mesh);
     if (options.output.empty()) fmt::print("{}", json);

@@ -247,10 +247,11 @@ py::list overlap(const Polygon& a, const Polygon& b) {
 }
 
 py::object voronoi(const Polygon& region, int n, std::uint64_t seed, int lloyd,
-                   double shortest_edge) {
+                   double shortest_edge, bool convex, double smallest_angle) {
   const auto [mesh, sites] = [&] {
     const py::gil_scoped_release release;
-    const VoronoiMesh found = voronoi_mesh(region, {n, seed, lloyd, shortest_edge});
+    const VoronoiMesh found =
+        voronoi_mesh(region, {n, seed, lloyd, shortest_edge, convex, smallest_angle});
     return std::pair(in_world(region, found.mesh), found.sites);
   }();
   return result("VoronoiCells", array_of(mesh.points), index_lists(mesh.cells),
@@ -358,11 +359,16 @@ rings: list of arrays (k, 2), m: the outer ring and holes, which may cross, touc
 What they surround an odd number of times (the even-odd rule) is kept, exactly. tolerance: vertices are
 left out as long as the Hausdorff distance between the boundaries stays below it, m.)");
   module.def("voronoi", &voronoi, py::arg("region"), py::arg("n"), py::arg("seed") = 1,
-             py::arg("lloyd") = 50, py::arg("shortest_edge") = .1,
+             py::arg("lloyd") = 50, py::arg("shortest_edge") = .1, py::arg("convex") = false,
+             py::arg("smallest_angle") = 0.,
              R"(Cuts a polygon into n Voronoi cells that tile it exactly: a VoronoiCells.
+
+A cell that would go round a hole of the polygon is divided, so there may be more than n.
 
 seed: of the random sites. lloyd: largest number of steps of Lloyd's iteration, which evens the cells
 out. shortest_edge: length below which edges are collapsed, over the size of a cell, 0 to 0.5.
+convex: cuts cells that are not convex until all are. smallest_angle: nodes move until no angle of a
+cell is below it, as far as the shape of the polygon lets them, rad, 0 to pi/3.
 
 Raises SceneError if the region is too thin, ValueError for a wrong option.)");
 }

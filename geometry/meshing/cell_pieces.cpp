@@ -41,7 +41,7 @@ std::optional<Ring> united(const Ring& a, const Ring& b) {
   return ring;
 }
 
-// Does the work of join_pieces.
+// Does the work of join_pieces and join_triangles.
 class PieceJoiner {
  public:
   explicit PieceJoiner(Pieces& pieces) : pieces_(pieces), sets_(pieces.list.size()) {
@@ -53,20 +53,54 @@ class PieceJoiner {
     }
   }
 
-  bool run() {
+  void join_to_owned() {
     std::vector<int> alone;
     for (int i = 0; i < static_cast<int>(pieces_.list.size()); ++i) {
       if (!pieces_.list[i].owned) alone.push_back(i);
     }
+    const auto takes = [](const Piece&, const Piece& other) { return other.owned; };
     // A piece that cannot be joined yet may become able to once others have been joined.
-    while (std::erase_if(alone, [&](int i) { return join(i); }) > 0) {
+    while (std::erase_if(alone, [&](int i) { return join(i, takes) >= 0; }) > 0) {
     }
-    std::erase_if(pieces_.list, [](const Piece& piece) { return piece.ring.empty(); });
-    return alone.empty();
+    drop_joined();
+  }
+
+  void join_triangles() {
+    std::vector<double> area(pieces_.list.size());
+    std::set<std::pair<double, int>> open;  // the smallest part first
+    for (int i = 0; i < static_cast<int>(pieces_.list.size()); ++i) {
+      if (!pieces_.list[i].opened) continue;
+      area[i] = ring_area(pieces_.points(pieces_.list[i].ring));
+      open.emplace(area[i], i);
+    }
+    const auto takes = [](const Piece& part, const Piece& other) {
+      return other.opened && other.site == part.site;
+    };
+    std::set<std::pair<double, int>> stuck;  // until others have been joined
+    while (!open.empty()) {
+      const auto [own, i] = *open.begin();
+      open.erase(open.begin());
+      const int j = join(i, takes);
+      if (j < 0) {
+        stuck.emplace(own, i);
+        continue;
+      }
+      for (auto* list : {&open, &stuck}) list->erase({area[j], j});
+      area[j] += own;
+      open.emplace(area[j], j);
+      open.merge(stuck);
+    }
+    drop_joined();
   }
 
  private:
-  bool join(int i) {
+  void drop_joined() {
+    std::erase_if(pieces_.list, [](const Piece& piece) { return piece.ring.empty(); });
+  }
+
+  // Joins piece i to one of those that may take it and returns the number of that one, or -1.
+  template <class Takes>
+  int join(int i, const Takes& takes) {
     Ring& ring = pieces_.list[i].ring;
     std::map<int, double> common;  // from the neighbour to the common length
     for (size_t k = 0; k < ring.size(); ++k) {
@@ -75,7 +109,7 @@ class PieceJoiner {
       const auto other = piece_left_of_.find({v, u});
       if (other == piece_left_of_.end()) continue;
       const int j = sets_.find(other->second);
-      if (!pieces_.list[j].owned) continue;
+      if (j == i || !takes(pieces_.list[i], pieces_.list[j])) continue;
       common[j] += (pieces_.nodes[u] - pieces_.nodes[v]).norm();
     }
     std::vector<int> neighbours;
@@ -88,9 +122,9 @@ class PieceJoiner {
       pieces_.list[j].ring = std::move(*both);
       ring.clear();
       sets_.join(i, j);
-      return true;
+      return j;
     }
-    return false;
+    return -1;
   }
 
   Pieces& pieces_;
@@ -152,6 +186,8 @@ void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites) {
   }
 }
 
-bool join_pieces(Pieces& pieces) { return PieceJoiner(pieces).run(); }
+void join_triangles(Pieces& pieces) { PieceJoiner(pieces).join_triangles(); }
+
+void join_pieces(Pieces& pieces) { PieceJoiner(pieces).join_to_owned(); }
 
 }  // namespace apothem

@@ -8,11 +8,12 @@
 
 namespace apothem {
 
-/// A piece of a Voronoi cell. After join_pieces it is a whole cell.
+/// A piece of a Voronoi cell. Once others have joined it, it is a whole cell.
 struct Piece {
   int site;               ///< index of the site whose cell the piece belongs to
   std::vector<int> ring;  ///< node indices, counter-clockwise
-  bool owned;             ///< whether the site lies in this piece
+  bool owned = false;     ///< whether the piece is a cell, as the one in which the site lies
+  bool opened = false;    ///< whether it is a part of a cell that went round a hole and was cut
 };
 
 /// All pieces of a region with their shared nodes.
@@ -39,9 +40,14 @@ void put_in_order(Pieces& pieces, int outline_size);
 /// piece contains it because of rounding.
 void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites);
 
-/// Joins every piece without its site to a neighbour that has its site: the one that shares the
-/// longest boundary with it, among those whose union with it is bounded by a simple ring. Returns
-/// false if pieces are left that no neighbour can take.
-bool join_pieces(Pieces& pieces);
+/// Joins the triangles of a cell that goes round a hole, which are the opened pieces of its site,
+/// to as few parts as their rings allow: in turn, the smallest part to the one with which it has
+/// the longest boundary in common, among those whose union with it is bounded by a simple ring.
+void join_triangles(Pieces& pieces);
+
+/// Joins every piece that is not owned to a neighbour that is: the one that shares the longest
+/// boundary with it, among those whose union with it is bounded by a simple ring. Pieces that no
+/// neighbour can take are left as they are.
+void join_pieces(Pieces& pieces);
 
 }  // namespace apothem

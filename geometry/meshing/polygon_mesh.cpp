@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <queue>
+#include <set>
 #include <tuple>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 
 namespace apothem {
 namespace {
@@ -15,15 +17,6 @@ void require_counter_clockwise(const std::vector<Vec2>& ring) {
   const Polygon polygon(ring);
   if (polygon.vertices().size() != ring.size()) throw InvalidPolygon("repeats a vertex", 0);
   if (polygon.input_index(1) != 1) throw InvalidPolygon("is clockwise", 0);
-}
-
-bool is_valid(const std::vector<Vec2>& ring) {
-  try {
-    require_counter_clockwise(ring);
-    return true;
-  } catch (const InvalidPolygon&) {
-    return false;
-  }
 }
 
 // Does the work of collapse_short_edges.
@@ -113,7 +106,8 @@ class Collapse {
     around.erase(std::unique(around.begin(), around.end()), around.end());
     for (const Vec2& place : places) {
       const bool valid = std::ranges::all_of(around, [&](int c) {
-        return is_valid(ring_after(c, u, v, place)) || !is_valid(cell_ring(mesh_, mesh_.cells[c]));
+        return is_valid_cell(ring_after(c, u, v, place)) ||
+               !is_valid_cell(cell_ring(mesh_, mesh_.cells[c]));
       });
       if (!valid) continue;
       replace(u, v, place, around);
@@ -194,7 +188,16 @@ std::vector<Vec2> cell_ring(const PolygonMesh& mesh, const std::vector<int>& cel
   return ring;
 }
 
-std::vector<int> tiling_boundary(const PolygonMesh& mesh) {
+bool is_valid_cell(const std::vector<Vec2>& ring) {
+  try {
+    require_counter_clockwise(ring);
+    return true;
+  } catch (const InvalidPolygon&) {
+    return false;
+  }
+}
+
+std::vector<std::vector<int>> tiling_boundary(const PolygonMesh& mesh, int holes) {
   std::map<std::pair<int, int>, int> cell_left_of;
   for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
     const std::vector<int>& cell = mesh.cells[c];
@@ -223,19 +226,32 @@ std::vector<int> tiling_boundary(const PolygonMesh& mesh) {
                            0);
     }
   }
-  std::vector<int> boundary;
-  if (!next.empty()) {
-    int node = next.begin()->first;
-    do {
-      boundary.push_back(node);
-      node = next.at(node);
-    } while (node != boundary.front() && boundary.size() <= next.size());
+  std::set<int> taken;
+  std::vector<std::vector<int>> rings;
+  for (const auto& [start, unused] : next) {
+    if (taken.count(start)) continue;
+    std::vector<int>& ring = rings.emplace_back();
+    for (int node = start; ring.empty() || node != start; node = next.at(node)) {
+      ring.push_back(node);
+      taken.insert(node);
+    }
   }
-  if (boundary.size() != next.size()) {
-    throw InvalidPolygon("the cells have gaps: their boundary is not one ring", 0);
+  if (static_cast<int>(rings.size()) != holes + 1) {
+    throw InvalidPolygon("the cells have gaps: their boundary has " + std::to_string(rings.size()) +
+                             " rings instead of " + std::to_string(holes + 1),
+                         0);
   }
-  require_counter_clockwise(cell_ring(mesh, boundary));
-  return boundary;
+  const auto outer = std::ranges::find_if(
+      rings, [&](const auto& ring) { return ring_area(cell_ring(mesh, ring)) > 0; });
+  if (outer != rings.end()) std::rotate(rings.begin(), outer, outer + 1);
+  require_counter_clockwise(cell_ring(mesh, rings.front()));
+  Rings around;
+  for (size_t i = 1; i < rings.size(); ++i) {
+    around.push_back(cell_ring(mesh, {rings[i].rbegin(), rings[i].rend()}));
+    require_counter_clockwise(around.back());
+  }
+  const Polygon whole(cell_ring(mesh, rings.front()), around);
+  return rings;
 }
 
 ShortEdges collapse_short_edges(PolygonMesh& mesh, std::vector<int> freedom, double shortest) {

@@ -18,17 +18,23 @@ struct PolygonMesh {
 /// The coordinates of a cell's nodes in the order of the cell, m.
 std::vector<Vec2> cell_ring(const PolygonMesh& mesh, const std::vector<int>& cell);
 
-/// Returns the nodes on the boundary of the mesh, counter-clockwise from the one with the smallest
-/// index. Throws InvalidPolygon, whose message names the cell where there is one, unless the cells
-/// tile the polygon of these nodes exactly. The test has no tolerance. Its conditions are:
+/// True if a ring is a simple counter-clockwise polygon, by exact predicates.
+bool is_valid_cell(const std::vector<Vec2>& ring);
+
+/// Returns the nodes on the boundary of a mesh of a region with so many holes, ring by ring: the
+/// outer one, counter-clockwise, and then those around the holes, clockwise. Each begins at its
+/// smallest node index, and the holes are in the order of these. Throws InvalidPolygon, whose
+/// message names the cell where there is one, unless the cells tile the polygon of these rings
+/// exactly. The test has no tolerance. Its conditions are:
 /// - Every cell is a simple counter-clockwise polygon, by exact predicates.
 /// - Every edge belongs to one cell, or to two cells in opposite senses.
-/// - The edges that belong to one cell only form one ring, which is a simple counter-clockwise
-///   polygon.
-/// These conditions are sufficient: the winding number of the ring about a point is the sum of the
-/// winding numbers of the cells. So every point inside the ring that is on no edge lies in exactly
-/// one cell, and no cell reaches outside.
-std::vector<int> tiling_boundary(const PolygonMesh& mesh);
+/// - The edges that belong to one cell only form as many rings as there are holes and one more, in
+///   which no node appears twice. One of them is a counter-clockwise polygon, and the others are
+///   valid holes of it, clockwise.
+/// These conditions are sufficient: the winding number of the rings about a point is the sum of the
+/// winding numbers of the cells. So every point inside that is on no edge lies in exactly one cell,
+/// and no cell reaches outside or into a hole.
+std::vector<std::vector<int>> tiling_boundary(const PolygonMesh& mesh, int holes = 0);
 
 /// The freedom of a node that can move anywhere when an edge collapses. A node with an index of a
 /// straight edge of the outline as its freedom lies on that edge.

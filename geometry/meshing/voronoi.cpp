@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "geometry/meshing/cell_pieces.hpp"
+#include "geometry/meshing/cell_shapes.hpp"
 #include "geometry/meshing/voronoi_cells.hpp"
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
@@ -17,16 +19,21 @@ namespace apothem {
 namespace {
 
 constexpr double kEven = 1e-3;           // movement over the cell size that ends Lloyd's iteration
+constexpr double kSmallPart = .25;       // largest area of a part that joins, over that of a cell
 constexpr double kUnresolved = 0x1p-40;  // shorter edges over the region's size always collapse
 
 // The region in coordinates relative to its origin().
 Polygon local_polygon(const Polygon& region) {
+  Rings rings = rings_of(region);
+  for (std::vector<Vec2>& ring : rings) {
+    for (Vec2& v : ring) v -= region.origin();
+  }
   try {
-    return Polygon(region.local_vertices());
+    return Polygon(polygon_of_rings(rings));
   } catch (const InvalidPolygon& error) {
     throw InvalidPolygon(
         std::string("has details that are lost relative to its vertex 0: ") + error.what(),
-        error.vertex());
+        error.vertex(), error.hole());
   }
 }
 
@@ -109,7 +116,7 @@ std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2
     if (near[i] != kNone) ring = left_part(ring, region[near[i]], region.after(near[i]));
     const Vec2 place = centroid(ring, sites[i]);
     if (!is_finite(place)) continue;
-    if (near[i] == kNone || strictly_inside(region.vertices(), place)) moved[i] = place;
+    if (near[i] == kNone || side_of(region, place) > 0) moved[i] = place;
   }
   if (std::ranges::find(exact, true) == exact.end()) return moved;
   Pieces pieces = diagram.cut(region, exact);
@@ -119,15 +126,56 @@ std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2
     const Vec2& site = sites[piece.site];
     const std::vector<Vec2> ring = pieces.points(piece.ring);
     const Vec2 place = walk(site, centroid(ring, site), ring);
-    if (strictly_inside(region.vertices(), place)) moved[piece.site] = place;
+    if (side_of(region, place) > 0) moved[piece.site] = place;
   }
   return moved;
 }
 
-void require_no_holes(const Polygon& region) {
-  if (!region.has_holes()) return;
-  throw InvalidPolygon(
-      "has holes, around which Voronoi cells are not supported yet; cut it so that it has none", 0);
+// Turns all pieces into cells and returns their number. Cell i has site i. Large parts of cells
+// that went round a hole, and pieces that no neighbour can take, are cells of their own, which
+// follow.
+int make_cells(Pieces& pieces, int sites, double cell_area) {
+  int cells = sites;
+  const auto make_cell = [&](Piece& piece) {
+    piece.owned = true;
+    piece.site = cells++;
+  };
+  for (Piece& piece : pieces.list) {
+    if (piece.owned || !piece.opened) continue;
+    if (ring_area(pieces.points(piece.ring)) >= kSmallPart * cell_area) make_cell(piece);
+  }
+  join_pieces(pieces);
+  for (Piece& piece : pieces.list) {
+    if (!piece.owned) make_cell(piece);
+  }
+  return cells;
+}
+
+// The freedom of the nodes of a mesh, as in collapse_short_edges.
+std::vector<int> freedom_of_nodes(const Polygon& region, const PolygonMesh& mesh) {
+  std::vector<int> freedom(mesh.points.size(), kAnywhere);
+  for (const std::vector<int>& ring : tiling_boundary(mesh, region.rings() - 1)) {
+    int edge = 0;
+    for (const int node : ring) {
+      if (node < region.size()) edge = node;
+      freedom[node] = node == edge ? kNowhere : edge;
+    }
+  }
+  return freedom;
+}
+
+// Throws InvalidPolygon unless the cells tile the region.
+void require_tiling(const PolygonMesh& mesh, const Polygon& region) {
+  try {
+    tiling_boundary(mesh, region.rings() - 1);
+  } catch (const InvalidPolygon& error) {
+    throw InvalidPolygon(
+        std::string("has places thinner than double precision resolves: ") + error.what(), 0);
+  }
+}
+
+double cell_area(const Polygon& region, size_t cells) {
+  return area_moments(region).area / static_cast<double>(cells);
 }
 
 }  // namespace
@@ -152,7 +200,7 @@ std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t s
     double v = uniform();
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const Vec2 site = local[i] + u * (local[j] - local[i]) + v * (local[k] - local[i]);
-    if (strictly_inside(local.vertices(), site) && taken.emplace(site.x(), site.y()).second) {
+    if (side_of(local, site) > 0 && taken.emplace(site.x(), site.y()).second) {
       sites.push_back(site);
     } else if (++failures > 1000 + 10 * count) {
       throw InvalidPolygon("is too thin for double precision to place sites in it", 0);
@@ -163,7 +211,7 @@ std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t s
 
 Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps) {
   const Polygon local = local_polygon(region);
-  const double size = std::sqrt(area_moments(region).area / static_cast<double>(sites.size()));
+  const double size = std::sqrt(cell_area(region, sites.size()));
   Relaxation result{0, 0};
   while (result.steps < steps) {
     const std::vector<Vec2> moved = sites_after_step(local, sites);
@@ -180,11 +228,10 @@ Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps) {
 
 VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge) {
-  require_no_holes(region);
   const Polygon local = local_polygon(region);
   if (sites.empty()) throw std::invalid_argument("there must be at least one site");
   for (const Vec2& site : sites) {
-    if (!is_finite(site) || !strictly_inside(local.vertices(), site)) {
+    if (!is_finite(site) || side_of(local, site) <= 0) {
       throw std::invalid_argument("every site must lie inside the region");
     }
   }
@@ -193,42 +240,41 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
   Pieces pieces = diagram.cut(local, std::vector<bool>(sites.size(), true));
   VoronoiMesh result;
   result.sites = sites;
-  result.joined_pieces = static_cast<int>(pieces.list.size() - sites.size());
-  if (!join_pieces(pieces)) {
-    throw InvalidPolygon(
-        "cuts pieces off its cells that no other cell can take; change the seed or the number of "
-        "cells",
-        0);
-  }
+  const int found = static_cast<int>(pieces.list.size());
+  const double area = cell_area(region, sites.size());
+  const int cells = make_cells(pieces, static_cast<int>(sites.size()), area);
+  result.joined_pieces = found - cells;
   result.mesh.points = std::move(pieces.nodes);
-  result.mesh.cells.resize(sites.size());
+  result.mesh.cells.resize(cells);
   for (Piece& piece : pieces.list) result.mesh.cells[piece.site] = std::move(piece.ring);
-  const double size = std::sqrt(area_moments(region).area / static_cast<double>(sites.size()));
   result.short_edges =
       collapse_short_edges(result.mesh, std::move(pieces.freedom),
-                           std::max(shortest_edge * size, kUnresolved * box.extent()));
-  try {
-    tiling_boundary(result.mesh);
-  } catch (const InvalidPolygon& error) {
-    throw InvalidPolygon(
-        std::string("has places thinner than double precision resolves: ") + error.what(), 0);
-  }
+                           std::max(shortest_edge * std::sqrt(area), kUnresolved * box.extent()));
+  require_tiling(result.mesh, region);
   return result;
 }
 
 VoronoiMesh voronoi_mesh(const Polygon& region, const VoronoiOptions& options) {
-  require_no_holes(region);
   if (options.cells < 1) throw std::invalid_argument("the number of cells must be at least 1");
   if (options.lloyd < 0)
     throw std::invalid_argument("Lloyd's iteration cannot have negative steps");
   if (!(options.shortest_edge >= 0 && options.shortest_edge <= .5)) {
     throw std::invalid_argument("the shortest edge must be between 0 and 0.5 cell sizes");
   }
+  if (!(options.smallest_angle >= 0 && options.smallest_angle <= std::numbers::pi / 3)) {
+    throw std::invalid_argument("the smallest angle must be between 0 and pi/3");
+  }
   std::vector<Vec2> sites = random_sites(region, options.cells, options.seed);
   const Relaxation relaxation = relax(region, sites, options.lloyd);
   VoronoiMesh result = voronoi_mesh(region, sites, options.shortest_edge);
   result.lloyd_steps = relaxation.steps;
   result.last_movement = relaxation.movement;
+  if (options.convex) result.cuts = cut_at_reflex_corners(result.mesh);
+  if (options.smallest_angle > 0) {
+    open_small_angles(result.mesh, freedom_of_nodes(region, result.mesh), options.smallest_angle,
+                      options.shortest_edge * std::sqrt(cell_area(region, sites.size())));
+  }
+  require_tiling(result.mesh, region);
   return result;
 }
 
@@ -238,7 +284,7 @@ PolygonMesh in_world(const Polygon& region, const PolygonMesh& mesh) {
     world.points[i] = i < region.size() ? region[i] : region.origin() + mesh.points[i];
   }
   try {
-    tiling_boundary(world);
+    tiling_boundary(world, region.rings() - 1);
   } catch (const InvalidPolygon& error) {
     throw InvalidPolygon(std::string("has cells that cannot be told apart this far from the "
                                      "origin; move it closer or ask for fewer cells: ") +

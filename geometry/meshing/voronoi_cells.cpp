@@ -4,6 +4,8 @@
 #include <CGAL/Arr_extended_dcel.h>
 #include <CGAL/Arr_segment_traits_2.h>
 #include <CGAL/Arrangement_2.h>
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Constrained_triangulation_face_base_2.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -13,10 +15,10 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "geometry/meshing/polygon_mesh.hpp"
-#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {
@@ -30,6 +32,13 @@ using Delaunay = CGAL::Delaunay_triangulation_2<
 using Segments = CGAL::Arr_segment_traits_2<Exact>;
 using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Exact,
+    CGAL::Triangulation_data_structure_2<
+        CGAL::Triangulation_vertex_base_with_info_2<int, Exact>,
+        CGAL::Triangulation_face_base_with_info_2<
+            int, Exact, CGAL::Constrained_triangulation_face_base_2<Exact>>>,
+    CGAL::No_constraint_intersection_tag>;
 
 // Rounds a point. The result has the same bits however the point was constructed; CGAL's own
 // approximation of the point would not.
@@ -128,7 +137,7 @@ class Cutter {
     std::vector<Traits::Curve_2> curves;
     curves.reserve(n + diagram_.edges.size());
     for (int k = 0; k < n; ++k) {
-      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[next(k, n)]), k);
+      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[region_.next(k)]), k);
     }
     std::vector<std::optional<Exact::Point_2>> centres(diagram_.centres.size());
     const auto centre = [&](int c) -> const Exact::Point_2& {
@@ -145,6 +154,7 @@ class Cutter {
     Arrangement arrangement;
     CGAL::insert(arrangement, curves.begin(), curves.end());
     mark_faces_inside(arrangement);
+    const std::set<Arrangement::Face_handle> closed = closed_faces(arrangement);
 
     Pieces pieces;
     pieces.nodes = region_.vertices();
@@ -154,14 +164,16 @@ class Cutter {
       if (face->data() != kInside) continue;
       const int site = site_of(face);
       if (!wanted[site]) continue;
-      Piece& piece = pieces.list.emplace_back(Piece{site, {}, false});
-      const auto start = face->outer_ccb();
-      auto edge = start;
-      do {
-        piece.ring.push_back(node_at(edge->target(), pieces));
-      } while (++edge != start);
+      if (closed.count(face)) {
+        add_triangles(face, site, pieces);
+        continue;
+      }
+      Piece& piece = pieces.list.emplace_back(Piece{site, {}});
+      for_boundary(
+          face, [&](const auto& edge) { piece.ring.push_back(node_at(edge->target(), pieces)); });
     }
     put_in_order(pieces, n);
+    if (!closed.empty()) join_triangles(pieces);
     mark_owned(pieces, diagram_.sites);
     return pieces;
   }
@@ -189,36 +201,104 @@ class Cutter {
     while (!todo.empty()) {
       const auto face = todo.back();
       todo.pop_back();
-      const auto visit = [&](Arrangement::Ccb_halfedge_circulator start) {
-        auto edge = start;
-        do {
-          const auto next = edge->twin()->face();
-          if (next->data() != kUnknown) continue;
-          next->set_data(outline_edge(edge) < 0 ? face->data() : kInside + kOutside - face->data());
-          todo.push_back(next);
-        } while (++edge != start);
+      for_boundary(face, [&](const auto& edge) {
+        const auto next = edge->twin()->face();
+        if (next->data() != kUnknown) return;
+        next->set_data(outline_edge(edge) < 0 ? face->data() : kInside + kOutside - face->data());
+        todo.push_back(next);
+      });
+    }
+  }
+
+  // Calls visit(edge) for every halfedge around a face, beginning with its outer boundary.
+  template <class Visit>
+  static void for_boundary(Arrangement::Face_handle face, const Visit& visit) {
+    const auto walk = [&](Arrangement::Ccb_halfedge_circulator start) {
+      auto edge = start;
+      do visit(edge);
+      while (++edge != start);
+    };
+    if (face->has_outer_ccb()) walk(face->outer_ccb());
+    for (auto hole = face->holes_begin(); hole != face->holes_end(); ++hole) walk(*hole);
+  }
+
+  // The faces that go round a hole: all edges of the hole have the same face on their other side.
+  // Where a vertex of the hole lies on the outer boundary of such a face, its boundary is one line,
+  // which is not simple.
+  [[nodiscard]] std::set<Arrangement::Face_handle> closed_faces(Arrangement& arrangement) const {
+    std::set<Arrangement::Face_handle> closed;
+    if (!region_.has_holes()) return closed;
+    std::vector<std::set<Arrangement::Face_handle>> at(region_.size());  // per edge: faces inside
+    for (const auto face : arrangement.face_handles()) {
+      if (face->data() != kInside) continue;
+      for_boundary(face, [&](const auto& edge) {
+        if (const int k = outline_edge(edge); k >= 0) at[k].insert(face);
+      });
+    }
+    for (int ring = 1; ring < region_.rings(); ++ring) {
+      std::set<Arrangement::Face_handle> around;
+      for (int k = region_.ring_start(ring); k < region_.ring_start(ring + 1); ++k) {
+        around.merge(at[k]);
+      }
+      if (around.size() == 1) closed.insert(*around.begin());
+    }
+    return closed;
+  }
+
+  // Adds the triangles of the constrained Delaunay triangulation of a face as pieces.
+  void add_triangles(Arrangement::Face_handle face, int site, Pieces& pieces) const {
+    Triangulation triangulation;
+    std::vector<std::array<Triangulation::Vertex_handle, 2>> sides;  // with the face on their left
+    for_boundary(face, [&](const auto& edge) {
+      const auto vertex = [&](Arrangement::Vertex_handle end) {
+        const auto result = triangulation.insert(end->point());
+        result->info() = node_at(end, pieces);
+        return result;
       };
-      if (face->has_outer_ccb()) visit(face->outer_ccb());
-      for (auto hole = face->holes_begin(); hole != face->holes_end(); ++hole) visit(*hole);
+      sides.push_back({vertex(edge->source()), vertex(edge->target())});
+      triangulation.insert_constraint(sides.back()[0], sides.back()[1]);
+    });
+    // From the triangles at the sides, all others in the face are reached across other edges.
+    for (const auto triangle : triangulation.all_face_handles()) triangle->info() = kOutside;
+    std::vector<Triangulation::Face_handle> todo;
+    const auto add = [&](Triangulation::Face_handle triangle) {
+      if (triangle->info() == kInside) return;
+      triangle->info() = kInside;
+      Piece& piece = pieces.list.emplace_back(Piece{site, {}, false, true});
+      for (int k = 0; k < 3; ++k) piece.ring.push_back(triangle->vertex(k)->info());
+      todo.push_back(triangle);
+    };
+    for (const auto& [source, target] : sides) {
+      Triangulation::Face_handle triangle;
+      int k = 0;
+      triangulation.is_edge(source, target, triangle, k);
+      const bool is_left = triangle->vertex(Triangulation::ccw(k)) == source;
+      add(is_left ? triangle : triangle->neighbor(k));
+    }
+    while (!todo.empty()) {
+      const auto triangle = todo.back();
+      todo.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        if (!triangle->is_constrained(k)) add(triangle->neighbor(k));
+      }
     }
   }
 
   // The site to whose cell a face belongs. Any Voronoi edge on its boundary determines it; if there
   // is no such edge, there is only one site.
   int site_of(Arrangement::Face_handle face) const {
-    const auto start = face->outer_ccb();
-    auto edge = start;
-    do {
+    int site = -1;
+    for_boundary(face, [&](const auto& edge) {
       for (const int data : edge->curve().data()) {
-        if (data < region_.size()) continue;
+        if (site >= 0 || data < region_.size()) continue;
         const VoronoiDiagram::Parts::Edge& voronoi = diagram_.edges[data - region_.size()];
         const Vec2& a = diagram_.sites[voronoi.a];
         const bool a_is_left = CGAL::orientation(edge->source()->point(), edge->target()->point(),
                                                  Exact::Point_2(a.x(), a.y())) == CGAL::LEFT_TURN;
-        return a_is_left ? voronoi.a : voronoi.b;
+        site = a_is_left ? voronoi.a : voronoi.b;
       }
-    } while (++edge != start);
-    return 0;
+    });
+    return std::max(site, 0);
   }
 
   // Index of the node at a vertex of the arrangement; adds the node if it is new.
@@ -231,7 +311,7 @@ class Cutter {
       const int k = outline_edge(edge);
       if (k < 0) continue;
       freedom = k;
-      for (const int i : {k, next(k, region_.size())}) {
+      for (const int i : {k, region_.next(k)}) {
         if (vertex->point() == outline_[i]) {
           vertex->set_data(i);
           return i;

@@ -57,7 +57,11 @@ Mesh mesh_of_cells(const Polygon& region, const PolygonMesh& cells) {
   Mesh mesh;
   mesh.nodes = cells.points;
   for (const std::vector<int>& cell : cells.cells) mesh.add_element(cell);
-  add_outline_groups(mesh, edge_numbers(region), {});
+  std::vector<int> hole_sizes;
+  for (int ring = 1; ring < region.rings(); ++ring) {
+    hole_sizes.push_back(region.ring_start(ring + 1) - region.ring_start(ring));
+  }
+  add_outline_groups(mesh, edge_numbers(region), hole_sizes);
   return mesh;
 }
 

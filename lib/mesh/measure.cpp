@@ -1,9 +1,10 @@
 #include "lib/mesh/measure.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/meshing/cell_shapes.hpp"
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -56,17 +57,19 @@ MeshQuality mesh_quality(const Mesh& mesh) {
     q.area += area;
     q.smallest_area = std::min(q.smallest_area, area);
     q.largest_area = std::max(q.largest_area, area);
+    bool convex = true;
     Vec2 in = mesh.nodes[corners.front()] - mesh.nodes[corners.back()];
     for (size_t i = 0; i < corners.size(); ++i) {
       const Vec2 out = mesh.nodes[after(corners, i)] - mesh.nodes[corners[i]];
-      const double turn = arc_tangent(cross(in, out), in.dot(out));
-      const double angle = std::numbers::pi - turn;
+      const double angle = corner_angle(in, out);
+      convex = convex && !is_reflex(angle);
       q.smallest_angle = std::min(q.smallest_angle, angle);
       q.largest_angle = std::max(q.largest_angle, angle);
       q.shortest_edge = std::min(q.shortest_edge, out.norm());
       q.longest_edge = std::max(q.longest_edge, out.norm());
       in = out;
     }
+    if (!convex) ++q.not_convex;
     if (corners.size() <= 4) {
       const double best = corners.size() == 3 ? std::sqrt(3.) / 2 : 1;
       q.smallest_scaled_jacobian =
@@ -74,6 +77,19 @@ MeshQuality mesh_quality(const Mesh& mesh) {
     }
   }
   return q;
+}
+
+double smallest_edge_ratio(const Mesh& mesh) {
+  double smallest = HUGE_VAL;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const Polygon element(mesh.places(mesh.element(e)));
+    double shortest = HUGE_VAL;
+    for (int i = 0; i < element.size(); ++i) {
+      shortest = std::min(shortest, (element.after(i) - element[i]).norm());
+    }
+    smallest = std::min(smallest, shortest / largest_inscribed_circle(element).radius);
+  }
+  return smallest;
 }
 
 MeanMotion mean_motion(const Mesh& mesh, std::span<const double> displacement,

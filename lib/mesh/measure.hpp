@@ -33,6 +33,7 @@ struct MeshQuality {
   double smallest_area, largest_area;    ///< of an element, m^2
   double shortest_edge, longest_edge;    ///< length, m
   double smallest_angle, largest_angle;  ///< at a corner of an element, rad
+  int not_convex = 0;  ///< number of elements with an angle above 180 degrees by more than 1e-9 rad
   /// Smallest scaled Jacobian of triangles and quadrilaterals: the smallest sine of a corner, for
   /// triangles divided by the sine of 60 degrees. It is 1 for equilateral triangles and rectangles,
   /// 0 or less for degenerate or inverted elements (P. Knupp, Algebraic mesh quality metrics, SIAM
@@ -41,6 +42,10 @@ struct MeshQuality {
 };
 /// Measures all elements.
 MeshQuality mesh_quality(const Mesh& mesh);
+/// The smallest ratio of the shortest edge of an element to its apothem, which is the radius of its
+/// largest inscribed circle. It is 3.46 for an equilateral triangle, 2 for a square and 1.15 for a
+/// regular hexagon.
+double smallest_edge_ratio(const Mesh& mesh);
 
 /// The rigid motion that a deformed and moving mesh is nearest to.
 struct MeanMotion {

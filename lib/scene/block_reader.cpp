@@ -210,10 +210,6 @@ BlockReader::Draw BlockReader::table(const JsonValue& value) const {
   };
 }
 
-bool BlockReader::have_holes() const {
-  return std::ranges::any_of(shapes_, [](const Shape& s) { return !s.holes.empty(); });
-}
-
 Block BlockReader::draw(RandomNumbers& random) const {
   double weights = 0;
   for (const Shape& s : shapes_) weights += s.weight;

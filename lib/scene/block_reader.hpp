@@ -22,8 +22,6 @@ class BlockReader {
   void read(JsonObject& fill);
   /// The next block. Needs read().
   [[nodiscard]] Block draw(RandomNumbers& random) const;
-  /// Whether one of the shapes has holes.
-  [[nodiscard]] bool have_holes() const;
   /// Whether blocks have different angles.
   [[nodiscard]] bool turn() const { return angles_[0] < angles_[1]; }
 

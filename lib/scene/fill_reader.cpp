@@ -136,11 +136,6 @@ class Fill {
         in_.fail(*v, "has no meaning for Voronoi cells, which fill the region; leave it out");
       }
     }
-    if (!holes_.empty()) {
-      in_.fail(place_of_holes(),
-               "Voronoi cells of a region with holes are not supported yet; cut the region so that "
-               "it has none");
-    }
   }
 
   [[nodiscard]] const JsonValue& place_of_holes() const {
@@ -150,11 +145,6 @@ class Fill {
 
   void blocks(JsonObject& object) {
     blocks_.read(object);
-    if (element_ && element_->kind == ElementKind::polygon && blocks_.have_holes()) {
-      in_.fail(*value_.find("mesh"),
-               "cells of blocks with holes are not supported yet; take \"element\": \"T3\" or "
-               "\"Q4\"");
-    }
     const JsonValue* count = object.optional("count");
     const JsonValue* fraction = object.optional("solid_fraction");
     if (!count == !fraction) {
@@ -190,9 +180,19 @@ class Fill {
     }
   }
 
-  [[nodiscard]] PackingSpace space_of(const std::vector<PolygonWithHoles>& obstacles,
-                                      double size) const {
-    for (const Polygon& hole : holes_) {
+  [[nodiscard]] Polygon region_without_holes() const {
+    Rings rings = rings_of(*outline_);
+    for (const Polygon& hole : holes_) rings.push_back(hole.vertices());
+    try {
+      return Polygon(polygon_of_rings(rings));
+    } catch (const InvalidPolygon& error) {
+      in_.fail(place_of_holes(), error.what());
+    }
+  }
+
+  [[nodiscard]] PackingSpace space_of(const std::vector<PolygonWithHoles>& obstacles, double size,
+                                      const std::vector<Polygon>& holes) const {
+    for (const Polygon& hole : holes) {
       for (const Vec2& v : hole.vertices()) {
         const Box box = bounding_box(*outline_);
         if (v.x() < box.x0 || v.x() > box.x1 || v.y() < box.y0 || v.y() > box.y1) {
@@ -200,7 +200,7 @@ class Fill {
         }
       }
     }
-    PackingSpace space(*outline_, holes_, gap_, size);
+    PackingSpace space(*outline_, holes, gap_, size);
     for (const PolygonWithHoles& obstacle : obstacles) space.add_obstacle(obstacle);
     return space;
   }
@@ -227,7 +227,7 @@ class Fill {
     const std::vector<Block> blocks = draw_all(random, area);
     double size = 0;
     for (const Block& b : blocks) size += b.scale / static_cast<double>(blocks.size());
-    PackingSpace space = space_of(obstacles, blocks.empty() ? 1 : size);
+    PackingSpace space = space_of(obstacles, blocks.empty() ? 1 : size, holes_);
     const Arrangement found =
         arranged_ == Arranged::random    ? insert_at_random(space, random, blocks)
         : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
@@ -289,10 +289,12 @@ class Fill {
   }
 
   void add_cells(std::vector<PolygonWithHoles>& obstacles, Filled& filled) const {
-    const double size = std::sqrt(area_moments(*outline_).area / cells_.cells);
-    const PackingSpace space = space_of(obstacles, size);
+    const Polygon region = region_without_holes();
+    // The cells tile the region, so its holes need no test.
+    const PackingSpace space =
+        space_of(obstacles, std::sqrt(area_moments(region).area / cells_.cells), {});
     try {
-      const std::vector<std::vector<Vec2>> rings = voronoi_blocks(*outline_, cells_, gap_);
+      const std::vector<std::vector<Vec2>> rings = voronoi_blocks(region, cells_, gap_);
       for (const int i : along_curve(rings)) {
         const std::vector<Vec2>& ring = rings[i];
         if (!space.is_clear(shrunk(ring, kTouching))) {
@@ -339,8 +341,7 @@ class Fill {
     if (!shape.holes.empty()) make_.add(way, "holes", make_.rings(shape.holes));
     const bool cells = element_->kind == ElementKind::polygon;
     if (cells) {
-      const double count =
-          std::max(1., std::round(ring_area(shape.outer) / (mesh_size_ * mesh_size_)));
+      const double count = std::max(1., std::round(area_of(shape) / (mesh_size_ * mesh_size_)));
       make_.add(way, "cells", make_.number(count));
       make_.add(way, "seed", make_.number(static_cast<double>(number)));
     } else {

@@ -52,7 +52,7 @@ class Import {
       rules_.polygonize = in_.choice(*v, {"outlines", "polygonize"}) == 1;
     }
     if (const JsonValue* v = object.optional("tolerance")) rules_.tolerance = in_.positive(*v, "m");
-    if (const JsonValue* v = object.optional("repair")) rules_.repair = flag(*v);
+    object.read("repair", rules_.repair, &JsonReader::boolean);
     if (const JsonValue* v = object.optional("faults")) {
       rules_.skip_faults = in_.choice(*v, {"refuse", "skip"}) == 1;
     }
@@ -66,11 +66,6 @@ class Import {
       in_.fail(*layers_, "must be {\"LAYER\": { keys of a body } or false, ...}");
     }
     for (size_t i = 0; i < layers_->items().size(); ++i) read_layer(i);
-  }
-
-  bool flag(const JsonValue& value) const {
-    if (value.type() != JsonValue::Type::boolean) in_.fail(value, "must be true or false");
-    return value.boolean();
   }
 
   void read_layer(size_t i) {

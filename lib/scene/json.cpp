@@ -144,6 +144,11 @@ JsonValue parse_json(const std::string& text, const std::string& file) {
   return std::move(builder.root);
 }
 
+bool JsonReader::boolean(const JsonValue& value) const {
+  if (value.type() != JsonValue::Type::boolean) fail(value, "must be true or false");
+  return value.boolean();
+}
+
 double JsonReader::number(const JsonValue& value, const std::string& unit) const {
   if (value.type() != JsonValue::Type::number) {
     fail(value, fmt::format("must be a number{}, not {}", unit.empty() ? "" : " in " + unit,

@@ -27,6 +27,7 @@ class JsonReader {
     throw SceneError(file_, at.line(), at.pointer(), what);
   }
 
+  bool boolean(const JsonValue& value) const;
   double number(const JsonValue& value, const std::string& unit) const;
   double positive(const JsonValue& value, const std::string& unit) const;
   double not_negative(const JsonValue& value, const std::string& unit) const;

@@ -149,13 +149,15 @@ class MeshReader {
     object.read("seed", options.seed, &JsonReader::count);
     object.read("lloyd", options.lloyd, &JsonReader::count);
     object.read("shortest_edge", options.shortest_edge, &JsonReader::number, "");
+    object.read("convex", options.convex, &JsonReader::boolean);
+    object.read("smallest_angle", options.smallest_angle, &JsonReader::number, "rad");
     const JsonValue* size = object.optional("size");
+    const JsonValue* holes = object.optional("holes");
+    if (size != nullptr && holes != nullptr) {
+      in_.fail(*holes, "belongs to a \"polygon\"; give the rectangle as one");
+    }
     const Polygon region =
-        size != nullptr
-            ? block(object, *size)
-            : read_polygon_without_holes(in_, outline_of(object),
-                                         "Voronoi cells around holes are not supported yet: take "
-                                         "\"fill\", or cut the region so that it has none");
+        size != nullptr ? block(object, *size) : read_polygon(in_, outline_of(object), holes);
     object.finish();
     return mesh_of_cells(region, in_world(region, voronoi_mesh(region, options).mesh));
   }

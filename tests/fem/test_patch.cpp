@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lib/fem/finite_elements.hpp"
+#include "lib/mesh/boundary.hpp"
 #include "tests/fem/meshes.hpp"
 #include "tests/fem/static_solution.hpp"
 
@@ -24,10 +25,16 @@ std::vector<Patch> patches() {
   const Mesh dented = distorted(cells, .45), pairs = merged_cells(cells);
   CHECK(reflex_corners(dented) > 5);
   CHECK(reflex_corners(pairs) > 5);
+  const Polygon drilled(
+      {{0, -.5}, {1, -.5}, {1, .5}, {0, .5}},
+      {{{.2, -.2}, {.5, -.3}, {.6, .1}, {.4, 0}}, {{.7, .2}, {.8, .2}, {.8, .4}}});
+  const Mesh around = mesh_of_cells(
+      drilled, in_world(drilled, voronoi_mesh(drilled, VoronoiOptions{.cells = 12}).mesh));
+  CHECK(reflex_corners(around) > 5);
   return {{ElementKind::tri3, triangles(quads)}, {ElementKind::quad4, quads},
           {ElementKind::quad4_full, quads},      {ElementKind::polygon, quads},
           {ElementKind::polygon, cells},         {ElementKind::polygon, dented},
-          {ElementKind::polygon, pairs}};
+          {ElementKind::polygon, pairs},         {ElementKind::polygon, around}};
 }
 
 }  // namespace
@@ -36,8 +43,13 @@ TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
   double worst = 0;
   for (const Patch& patch : patches()) {
     const int nodes = static_cast<int>(patch.mesh.nodes.size());
-    const std::vector<bool> outline = outline_nodes(patch.mesh);
-    CHECK_NOTHROW(tiling_boundary(cells_of_mesh(patch.mesh)));
+    const Boundary around = boundary(patch.mesh);
+    std::vector<bool> outline(nodes, false);
+    for (const BoundaryLoop& loop : around.loops) {
+      for (const int node : loop.nodes) outline[node] = true;
+    }
+    CHECK_NOTHROW(tiling_boundary(cells_of_mesh(patch.mesh),
+                                  static_cast<int>(boundary(patch.mesh).loops.size()) - 1));
     for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
       for (const Plane plane : {Plane::stress, Plane::strain}) {
         for (const double size : {1e-6, 1.}) {

@@ -217,6 +217,18 @@ class Voronoi(unittest.TestCase):
         with self.assertRaises(ValueError):
             apothem.voronoi(region, 0)
 
+    def test_cells_around_a_hole(self):
+        hole = [(1, 1), (2, 1), (2, 2), (1, 2)]
+        region = apothem.Polygon([(0, 0), (3, 0), (3, 3), (0, 3)], [hole])
+        mesh = apothem.voronoi(region, 1)
+        cells = [apothem.Polygon(mesh.points[cell]) for cell in mesh.cells]
+        self.assertEqual((len(cells), mesh.sites.shape), (2, (1, 2)))
+        self.assertAlmostEqual(sum(cell.area for cell in cells), 8, 12)
+        mesh = apothem.voronoi(region, 20, convex=True, smallest_angle=0.6)
+        cells = [apothem.Polygon(mesh.points[cell]) for cell in mesh.cells]
+        self.assertAlmostEqual(sum(cell.area for cell in cells), 8, 12)
+        self.assertGreaterEqual(len(cells), 20)
+
 
 if __name__ == "__main__":
     unittest.main()

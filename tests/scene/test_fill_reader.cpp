@@ -145,6 +145,12 @@ TEST_CASE("Voronoi cells and a dense packing fill a region", "[fill]") {
   double area = 0;
   for (const RigidBody& b : cells.bodies) area += b.area;
   CHECK(area == Approx(16).epsilon(1e-12));
+  const Model drilled = model_of(R"("arrangement": "voronoi", "count": 9,
+    "holes": [ [[1, 2], [2, 2], [2, 3]], [[2.5, 3], [3, 3], [3, 3.5], [2.5, 3.5]] ])");
+  CHECK(drilled.bodies.size() >= 9);
+  area = 0;
+  for (const RigidBody& b : drilled.bodies) area += b.area;
+  CHECK(area == Approx(16 - .75).epsilon(1e-12));
   const Model dense = model_of(R"("arrangement": "dense", "shapes": [ { "quadrilateral": {} } ],
     "diameter": 0.5, "solid_fraction": 0.7)");
   area = 0;

@@ -146,10 +146,22 @@ TEST_CASE("a file with holes is filled around them", "[mesh][scene][holes]") {
   const Mesh mesh = read(fill + R"("holes": [[[3,3],[3.5,3],[3,3.5]]]}})", scene).mesh;
   check_laws(mesh, 15 - .125, 2);
   CHECK(std::ranges::count(mesh.groups, "hole-1", &MeshGroup::name) == 1);
+  const Mesh cells = read(R"({"voronoi": {"file": "a.wkt", "cells": 30,
+    "holes": [[[3,3],[3.5,3],[3,3.5]]], "convex": true, "smallest_angle": 0.5}})",
+                          scene)
+                         .mesh;
+  check_laws(cells, 15 - .125, 2);
+  CHECK(mesh_quality(cells).not_convex == 0);
+  CHECK(mesh_quality(cells).smallest_angle > .49);
+  CHECK(std::ranges::count(cells.groups, "hole-1", &MeshGroup::name) == 1);
   CHECK_THROWS_WITH(
-      read(R"({"voronoi": {"file": "a.wkt", "cells": 3}})", scene),
-      Contains(
-          "/voronoi/file: the polygon has holes; Voronoi cells around holes are not supported"));
+      read(R"({"voronoi": {"size": [1, 1], "cells": 3, "holes": []}})", scene),
+      Contains("/voronoi/holes: belongs to a \"polygon\"; give the rectangle as one"));
+  CHECK_THROWS_WITH(read(R"({"voronoi": {"size": [1, 1], "cells": 3, "convex": 1}})", scene),
+                    Contains("/voronoi/convex: must be true or false"));
+  CHECK_THROWS_WITH(
+      read(R"({"voronoi": {"size": [1, 1], "cells": 3, "smallest_angle": 2}})", scene),
+      Contains("/voronoi: the smallest angle must be between 0 and pi/3"));
 }
 
 TEST_CASE("only polygon elements may be quadrilaterals that are not convex", "[mesh][scene]") {

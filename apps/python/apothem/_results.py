@@ -116,7 +116,7 @@ class VoronoiCells(NamedTuple):
     """A mesh of Voronoi cells that share their nodes.
 
     points: array (m, 2) of the nodes, m.
-    cells: list of n arrays of the nodes of each cell, counter-clockwise.
+    cells: list of n or more arrays of the nodes of each cell, counter-clockwise; cell i < n is that of site i.
     sites: array (n, 2), m.
     """
 

@@ -849,7 +849,11 @@ TEST_CASE("a mesh of a region", "[program]") {
   };
   const Result printed = with({});
   REQUIRE(printed.code == 0);
-  CHECK(lines(printed.err) == 5);
+  CHECK(lines(printed.err) == 8);
+  CHECK(printed.err.find("\nangles       ") != std::string::npos);
+  CHECK(printed.err.find("; smallest of the region 90 degrees\n") != std::string::npos);
+  CHECK(printed.err.find("\nedge/apothem ") != std::string::npos);
+  CHECK(printed.err.find(" of 30 cells\n") != std::string::npos);
   const Result written = with({"-o", folder / "m.json", "--vtk", folder / "m.vtu"});
   REQUIRE(written.code == 0);
   CHECK(written.out == printed.err);  // the summary
@@ -871,6 +875,20 @@ TEST_CASE("a mesh of a region", "[program]") {
   CHECK(read.points == in_world(Polygon(ring), voronoi.mesh).points);
   CHECK(read.cells == voronoi.mesh.cells);
 
+  const std::string drilled = folder.write(
+      "drilled.wkt", "POLYGON ((0 0, 9 0, 9 4, 0 4), (1 1, 2 1, 1 3), (6 1, 8 2, 6 2))");
+  const Result around =
+      run({"mesh", drilled, "--voronoi", "3", "--convex", "--smallest-angle", "0.3"}, folder);
+  REQUIRE(around.code == 0);
+  CHECK(around.err.find("\nnot convex   0 of ") != std::string::npos);
+  CHECK(around.err.find("\ncuts         ") != std::string::npos);
+  const Json holed = Json::parse(around.out);
+  CHECK(holed["holes"].size() == 2);
+  CHECK(holed["points"][4] == holed["holes"][0][0]);
+  PolygonMesh cells{{}, holed["cells"]};
+  for (const Json& p : holed["points"]) cells.points.emplace_back(p[0], p[1]);
+  CHECK(tiling_boundary(cells, 2).size() == 3);
+
   const std::string bow = folder.write("bow.json", "[[0,0],[1,1],[1,0],[0,1]]");
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{"mesh", region},
@@ -881,6 +899,8 @@ TEST_CASE("a mesh of a region", "[program]") {
         {"mesh", region, "--voronoi", "5", "--lloyd", "-1"},
         {"mesh", region, "--voronoi", "5", "--shortest-edge", "0.6"},
         {"mesh", region, "--voronoi", "5", "--shortest-edge", "nan"},
+        {"mesh", region, "--voronoi", "5", "--smallest-angle", "1.1"},
+        {"mesh", region, "--convex"},
         {"mesh", region, "--voronoi", "5", "-o", folder / "x", "--vtk", folder / "x"},
         {"mesh", bow, "--voronoi", "5", "-o", folder / "x"},
         {"mesh", region, "--voronoi", "5", "--json"},

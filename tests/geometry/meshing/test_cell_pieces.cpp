@@ -42,7 +42,7 @@ TEST_CASE("a piece joins the neighbour with the longest common boundary", "[cell
                         {1, ring(1, 0, 3, 1), true},     // below
                         {0, ring(1, 1, 3, 3), false}});  // two edges with each
   pieces.nodes[node(1, 3)].y() = 3.5;                    // one of them longer
-  REQUIRE(join_pieces(pieces));
+  join_pieces(pieces);
   REQUIRE(pieces.list.size() == 2);
   CHECK(area(pieces, pieces.list[0]) == 3 + 4 + .5);
   CHECK(area(pieces, pieces.list[1]) == 2);
@@ -51,7 +51,7 @@ TEST_CASE("a piece joins the neighbour with the longest common boundary", "[cell
 TEST_CASE("pieces behind others join as well", "[cell_pieces]") {
   Pieces pieces = grid(
       {{0, ring(2, 0, 3, 1), false}, {1, ring(1, 0, 2, 1), false}, {2, ring(0, 0, 1, 1), true}});
-  REQUIRE(join_pieces(pieces));
+  join_pieces(pieces);
   REQUIRE(pieces.list.size() == 1);
   CHECK(pieces.list[0].site == 2);
   CHECK(area(pieces, pieces.list[0]) == 3);
@@ -63,11 +63,29 @@ TEST_CASE("no cell closes around another", "[cell_pieces]") {
                            node(1, 1), node(1, 2), node(2, 2), node(3, 2), node(3, 3), node(2, 3),
                            node(1, 3), node(0, 3), node(0, 2), node(0, 1)};
   Pieces pieces = grid({{0, c, true}, {1, ring(1, 1, 2, 2), true}, {2, ring(2, 1, 3, 2), false}});
-  REQUIRE(join_pieces(pieces));
+  join_pieces(pieces);
   REQUIRE(pieces.list.size() == 2);
   CHECK(area(pieces, pieces.list[0]) == 7);  // would be 8, with a hole
   CHECK(area(pieces, pieces.list[1]) == 2);
   // A piece with no neighbour at all.
   Pieces alone = grid({{0, ring(0, 0, 1, 1), true}, {1, ring(2, 2, 3, 3), false}});
-  CHECK_FALSE(join_pieces(alone));
+  join_pieces(alone);
+  CHECK(alone.list.size() == 2);
+}
+
+TEST_CASE("parts of a cell that goes round a hole join to two, the smallest first",
+          "[cell_pieces]") {
+  std::vector<Piece> squares;
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      if (x != 1 || y != 1) squares.push_back({0, ring(x, y, x + 1, y + 1), false, true});
+    }
+  }
+  squares.push_back({1, ring(1, 1, 2, 2), true});  // of another site
+  Pieces pieces = grid(squares);
+  join_triangles(pieces);
+  REQUIRE(pieces.list.size() == 3);
+  CHECK(area(pieces, pieces.list[0]) + area(pieces, pieces.list[1]) == 8);
+  CHECK(std::min(area(pieces, pieces.list[0]), area(pieces, pieces.list[1])) >= 2);
+  CHECK(area(pieces, pieces.list[2]) == 1);
 }

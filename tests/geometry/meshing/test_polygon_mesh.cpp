@@ -38,7 +38,20 @@ std::string refusal(const PolygonMesh& mesh) {
 }  // namespace
 
 TEST_CASE("the boundary of a tiling is one ring", "[polygon_mesh]") {
-  CHECK(tiling_boundary(squares()) == std::vector<int>{0, 1, 2, 5, 8, 7, 6, 3});
+  CHECK(tiling_boundary(squares()) == std::vector<std::vector<int>>{{0, 1, 2, 5, 8, 7, 6, 3}});
+}
+
+TEST_CASE("the boundary of a tiling with a hole is two rings", "[polygon_mesh]") {
+  // A square around a square, in four cells. The hole has the lowest numbers.
+  PolygonMesh mesh{{{1, 1}, {2, 1}, {2, 2}, {1, 2}, {0, 0}, {3, 0}, {3, 3}, {0, 3}},
+                   {{4, 5, 1, 0}, {5, 6, 2, 1}, {6, 7, 3, 2}, {7, 4, 0, 3}}};
+  CHECK(tiling_boundary(mesh, 1) == std::vector<std::vector<int>>{{4, 5, 6, 7}, {0, 3, 2, 1}});
+  CHECK_THROWS_WITH(tiling_boundary(mesh), Catch::Contains("has 2 rings instead of 1"));
+  CHECK_THROWS_WITH(tiling_boundary(squares(), 1), Catch::Contains("has 1 rings instead of 2"));
+  // Two squares apart from each other are no square with a hole.
+  PolygonMesh apart{{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {3, 0}, {3, 1}, {2, 1}},
+                    {{0, 1, 2, 3}, {4, 5, 6, 7}}};
+  CHECK_THROWS_AS(tiling_boundary(apart, 1), InvalidPolygon);
 }
 
 TEST_CASE("what is no tiling is refused", "[polygon_mesh]") {
