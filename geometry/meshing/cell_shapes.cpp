@@ -19,17 +19,17 @@ constexpr int kSweeps = 100;                        // over all nodes
 constexpr std::array kSteps{.4, .2, .1, .05, .02};  // of a move, over the shortest edge
 constexpr double kGain = 1e-3;  // rad by which a move must open the first angle that differs
 
-using Ring = std::vector<int>;
+using NodeRing = std::vector<int>;
 
 // Cuts one cell.
 class CellCutter {
  public:
-  CellCutter(const std::vector<Vec2>& points, std::vector<Ring>& cells)
+  CellCutter(const std::vector<Vec2>& points, std::vector<NodeRing>& cells)
       : points_(points), cells_(cells) {}
 
   // Cuts cell c in two if it has a reflex corner; returns whether it has.
   bool cut(size_t c) {
-    const Ring cell = cells_[c];
+    const NodeRing cell = cells_[c];
     const int n = static_cast<int>(cell.size());
     std::optional<Cut> best;
     for (int i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ class CellCutter {
       }
     }
     if (!best) return false;
-    Ring parts[2];
+    NodeRing parts[2];
     for (int k = best->from; k != best->to; k = next(k, n)) parts[0].push_back(cell[k]);
     parts[0].push_back(cell[best->to]);
     for (int k = best->to; k != best->from; k = next(k, n)) parts[1].push_back(cell[k]);
@@ -61,12 +61,12 @@ class CellCutter {
     }
   };
 
-  [[nodiscard]] double angle(const Ring& cell, int before, int at, int after) const {
+  [[nodiscard]] double angle(const NodeRing& cell, int before, int at, int after) const {
     const Vec2& p = points_[cell[at]];
     return corner_angle(p - points_[cell[before]], points_[cell[after]] - p);
   }
 
-  [[nodiscard]] Cut diagonal(const Ring& cell, int i, int j) const {
+  [[nodiscard]] Cut diagonal(const NodeRing& cell, int i, int j) const {
     const int n = static_cast<int>(cell.size());
     const std::array begin{angle(cell, previous(i, n), i, j), angle(cell, j, i, next(i, n))};
     const std::array end{angle(cell, previous(j, n), j, i), angle(cell, i, j, next(j, n))};
@@ -75,7 +75,7 @@ class CellCutter {
   }
 
   // True if the segment between two corners runs through the inside of the cell.
-  [[nodiscard]] bool is_diagonal(const Ring& cell, int i, int j) const {
+  [[nodiscard]] bool is_diagonal(const NodeRing& cell, int i, int j) const {
     const int n = static_cast<int>(cell.size());
     if (i == j || next(i, n) == j || next(j, n) == i) return false;
     const Vec2& p = points_[cell[i]];
@@ -95,7 +95,7 @@ class CellCutter {
   }
 
   const std::vector<Vec2>& points_;
-  std::vector<Ring>& cells_;
+  std::vector<NodeRing>& cells_;
 };
 
 // Moves the nodes of a mesh.
@@ -137,7 +137,7 @@ class AngleOpener {
   void find_lines() {
     std::map<int, int> next;  // along the boundary
     std::set<std::pair<int, int>> edges;
-    for (const Ring& cell : mesh_.cells) {
+    for (const NodeRing& cell : mesh_.cells) {
       for (size_t i = 0; i < cell.size(); ++i) edges.insert({cell[i], after(cell, i)});
     }
     for (const auto& [u, v] : edges) {
@@ -170,7 +170,7 @@ class AngleOpener {
   [[nodiscard]] Corners corners_of(int node) const {
     Corners result;
     for (const Corner& corner : corners_at_[node]) {
-      const Ring& cell = mesh_.cells[corner.cell];
+      const NodeRing& cell = mesh_.cells[corner.cell];
       const int n = static_cast<int>(cell.size());
       const auto point = [&](int i) -> const Vec2& { return mesh_.points[cell[i]]; };
       for (const int at : {previous(corner.at, n), corner.at, next(corner.at, n)}) {

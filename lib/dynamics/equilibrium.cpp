@@ -61,6 +61,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   }
   free_.assign(n, 0);
   pushed_.assign(n, 0);
+  spins_.assign(n, 0);
   stiffness_.elastic.assign(n - first_, 0);
   stiffness_.contact.assign((n - first_) / 2, 0);
   stiffness_.rigid.assign(first_, 0);
@@ -85,6 +86,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
     if (body.servo) {
       const auto wall = static_cast<RigidIndex>(radius_.size()) - 1;
       walls_.push_back(wall);
+      rails_.push_back({wall, body.servo->direction});
       for (const size_t axis : {0, 1}) pushed_[dofs.layout().rigid(wall) + axis] = 1;
     }
   }
@@ -125,7 +127,7 @@ void Equilibrium::find_forces(State& state, const State& before) {
   push_walls(state);
 }
 
-// They move along their directions only.
+// Bodies on rails feel what acts along these.
 void Equilibrium::push_walls(const State& state) {
   for (const RigidIndex wall : walls_) {
     const Servo& servo = *model_.bodies[wall].servo;
@@ -133,6 +135,24 @@ void Equilibrium::push_walls(const State& state) {
     const double push = servo.excess(state.time, Vec2(&state.f[c]));
     rest_[c] = push * servo.direction.x();
     rest_[c + 1] = push * servo.direction.y();
+  }
+  for (size_t i = walls_.size(); i < rails_.size(); ++i) {
+    const size_t c = state.layout.rigid(rails_[i].body);
+    const double push = rails_[i].along.dot(Vec2(&rest_[c]));
+    rest_[c] = push * rails_[i].along.x();
+    rest_[c + 1] = push * rails_[i].along.y();
+  }
+}
+
+// Free rigid bodies that have a velocity slide in equilibrium: only what it leaves free comes to
+// rest.
+void Equilibrium::let_slide(const State& state) {
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    if (model_.bodies[i].motion != Motion::free) continue;
+    const size_t c = state.layout.rigid(i);
+    const Vec2 way(&state.v[c]);
+    if (way != Vec2::Zero()) rails_.push_back({i, Vec2(-way.y(), way.x()).normalized()});
+    if (state.v[c + 2] != 0) spins_[c + 2] = 1;
   }
 }
 
@@ -179,8 +199,8 @@ void Equilibrium::raise_masses() {
     mass_[c] = needed;
     inverse_[c] = 1 / needed;
   }
-  for (const RigidIndex wall : walls_) {  // one mass for both, so that they keep their directions
-    const size_t c = 3 * static_cast<size_t>(wall);
+  for (const Rail& rail : rails_) {  // one mass for both, so that they keep their directions
+    const size_t c = 3 * static_cast<size_t>(rail.body);
     const double both = std::max(mass_[c], mass_[c + 1]);
     for (const size_t at : {c, c + 1}) {
       if (mass_[at] > 0) velocity_[at] *= std::sqrt(mass_[at] / both);
@@ -509,6 +529,7 @@ void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   const State before = state;
   settling_ = true;
   find_slip(state);
+  let_slide(state);
   if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;

@@ -68,7 +68,7 @@ class Equilibrium {
                      const std::function<bool()>& stop, LoadStep& result);
   bool find_tangent(const State& state);
   bool find_step(State& state, const NewtonPath& path, bool first);
-  void put_walls_on_rails();
+  void put_on_rails();
   void go(State& state, const State& before, const NewtonPath& path);
   void begin_longer_step(const State& state, NewtonPath& path);
   bool begin_shorter_step(State& state, NewtonPath& path);
@@ -84,6 +84,7 @@ class Equilibrium {
   [[nodiscard]] double ramp(double from, double until) const;
   void find_forces(State& state, const State& before);
   void push_walls(const State& state);
+  void let_slide(const State& state);
   void find_slip(const State& state);
   void find_masses(const State& state);
   void raise_masses();
@@ -103,7 +104,7 @@ class Equilibrium {
   void move(State& state, bool first);
   [[nodiscard]] double speed(size_t coordinate) const;
   [[nodiscard]] bool held(size_t coordinate) const {
-    return !dofs_.can_move(coordinate) && !pushed_[coordinate];
+    return (!dofs_.can_move(coordinate) && !pushed_[coordinate]) || spins_[coordinate];
   }
   [[nodiscard]] double weight(size_t coordinate) const {
     return dofs_.weight().empty() ? 0 : dofs_.weight()[coordinate];
@@ -115,8 +116,16 @@ class Equilibrium {
   ContactTerm* contact_;
   double tolerance_;
   bool settling_ = false;
-  size_t first_;                      // coordinate of the nodes
+  size_t first_;  // coordinate of the nodes
+  // A rigid body that moves along one direction: a wall that holds a force, or, in a settled start,
+  // a body that slides, across its velocity.
+  struct Rail {
+    RigidIndex body;
+    Vec2 along;
+  };
   std::vector<RigidIndex> walls_;     // that hold a force
+  std::vector<Rail> rails_;           // of these, then of bodies that slide
+  std::vector<std::uint8_t> spins_;   // 1: angles that turn as given, and are not sought
   std::vector<std::uint8_t> pushed_;  // 1: coordinates of their places
   double shortest_;                   // edge of the elements, or inradius of a free rigid body, m
   NodeStiffness stiffness_;

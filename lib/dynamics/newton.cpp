@@ -19,7 +19,7 @@ constexpr int kMostIterations = 30;   // for a share of a load step
 constexpr double kLeastShare = 1e-4;  // of a load step
 constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
-constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 300, kMostHalvings = 6,
+constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalvings = 6,
               kMostShortened = 60;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
@@ -97,17 +97,15 @@ bool Equilibrium::find_step(State& state, const NewtonPath& path, bool first) {
     }
   }
   for (size_t c = 0; c < step_.size(); ++c) shift_[c] = path.shift * dofs_.mass(c);
-  put_walls_on_rails();
-  for (const RigidIndex wall : walls_) {
-    const size_t c = 3 * static_cast<size_t>(wall);
-    const Vec2& along = model_.bodies[wall].servo->direction;
+  put_on_rails();
+  for (const auto& [body, along] : rails_) {
+    const size_t c = 3 * static_cast<size_t>(body);
     step_[c] = along.dot(Vec2(step_[c], step_[c + 1]));
   }
   if (!solver_.factorise(tangent_, free_, shift_)) return false;
   solver_.solve(step_, step_);
-  for (const RigidIndex wall : walls_) {
-    const size_t c = 3 * static_cast<size_t>(wall);
-    const Vec2& along = model_.bodies[wall].servo->direction;
+  for (const auto& [body, along] : rails_) {
+    const size_t c = 3 * static_cast<size_t>(body);
     step_[c + 1] = along.y() * step_[c];
     step_[c] = along.x() * step_[c];
   }
@@ -116,11 +114,10 @@ bool Equilibrium::find_step(State& state, const NewtonPath& path, bool first) {
 
 // Says which coordinates the system has. A wall that holds a force has one, along its direction:
 // the x of its place.
-void Equilibrium::put_walls_on_rails() {
+void Equilibrium::put_on_rails() {
   for (size_t c = 0; c < free_.size(); ++c) free_[c] = !held(c);
-  for (const RigidIndex wall : walls_) {
-    const size_t c = 3 * static_cast<size_t>(wall);
-    const Vec2& along = model_.bodies[wall].servo->direction;
+  for (const auto& [body, along] : rails_) {
+    const size_t c = 3 * static_cast<size_t>(body);
     tangent_.put_on_rail(c, along.x(), along.y());
     free_[c + 1] = 0;
   }
@@ -252,7 +249,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
 int Equilibrium::negative_pivots(const State& state) {
   std::ranges::fill(shift_, 0.);
   if (!find_tangent(state)) return -1;
-  put_walls_on_rails();
+  put_on_rails();
   if (!solver_.factorise(tangent_, free_, shift_)) return -1;
   return solver_.negative_pivots(kPivotNoise);
 }

@@ -13,6 +13,6 @@ namespace apothem {
 
 /// One whole sentence for each reason to doubt; each names the remedy.
 std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes,
-                                     std::span<const LoadStep> steps);
+                                     std::span<const LoadStep> steps = {});
 
 }  // namespace apothem

@@ -72,7 +72,7 @@ TimeSettings statics(int load_steps) {
 
 }  // namespace
 
-TEST_CASE("relaxation finds the deflection that Newton's method finds", "[equilibrium]") {
+TEST_CASE("a static run finds the deflection of an independent code", "[equilibrium]") {
   for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
     const Elastic elastic{law, Plane::stress, kYoung, .2};
     DeformableBody beam = block("beam", {4, 1}, {16, 4}, {0, 0});
