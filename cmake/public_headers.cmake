@@ -105,4 +105,5 @@ set(APOTHEM_PUBLIC_HEADERS
   scene/json_value.hpp
   scene/scene.hpp
   scene/setting.hpp
+  solver/tangent.hpp
   text/error.hpp)

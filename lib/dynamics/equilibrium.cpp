@@ -30,6 +30,7 @@ constexpr double kLag = 0.1;      // of the force's change over a step, added to
 constexpr double kStride = 0.02;  // of the shortest length, per step: no contact is jumped over
 constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
+constexpr double kRigidNoise = 8;                // times that: corners are turned and moved
 constexpr double kFar = 100;                     // of the scene's size: there a body is lost
 constexpr int kCheckedEvery = 10;
 constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
@@ -322,7 +323,7 @@ bool Equilibrium::rigid_balanced(const State& state, RigidIndex b, double contac
   result.load += own;
   sum_loads_ += own * own;
   const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius_[b];
-  const double noise = place * (stiffness_.rigid[c] + lambda_[b] * body.mass);
+  const double noise = kRigidNoise * place * (stiffness_.rigid[c] + lambda_[b] * body.mass);
   return note_balance(b, force + std::abs(moment), own + contact, force * force + moment * moment,
                       noise * noise, result);
 }
@@ -525,14 +526,34 @@ void Equilibrium::fields(Archive& archive) {
   archive.sized("contact", stiffness_.contact).sized("rigid", stiffness_.rigid);
 }
 
-void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
-  const State before = state;
+void Equilibrium::begin_settling(const State& state) {
   settling_ = true;
   find_slip(state);
   let_slide(state);
+}
+
+void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
+  const State before = state;
+  begin_settling(state);
   if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
+}
+
+bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& stop) {
+  const State before = state;
+  begin_settling(state);
+  LoadStep result{state.time};
+  const Verdict verdict = newton(state, before, state.time, stop, result);
+  if (verdict == Verdict::stopped) throw Stopped();
+  if (verdict == Verdict::found) {
+    state.v = before.v;
+    return true;
+  }
+  state = before;
+  if (contact_) contact_->drop_trial();
+  for (const auto& term : terms_) term->refresh(state);
+  return false;
 }
 
 }  // namespace apothem

@@ -34,6 +34,9 @@ class Equilibrium {
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
   void settle(State& state, const std::function<bool()>& stop);
+  /// The same by Newton's method alone. Returns false, with the state as it was, if that finds
+  /// none.
+  bool settle_by_newton(State& state, const std::function<bool()>& stop);
   /// The loads of the last evaluation have been there before the first load step.
   void begin_loaded() { outside_ = loads(); }
 
@@ -57,6 +60,7 @@ class Equilibrium {
     std::int64_t in_step = 0;             // in this implicit step
     std::int64_t shortened = 0;           // implicit steps that were too long
     double residual = 0, at_start = 0;    // before the last iteration; at the start of the step
+    bool polishing = false;               // whether it goes on from an equilibrium to round-off
     std::vector<double> x_done, base, x;  // of the last equilibrium; at the start of the implicit
                                           // step; of the state that is tried
     void fields(Archive& archive);
@@ -85,6 +89,7 @@ class Equilibrium {
   void find_forces(State& state, const State& before);
   void push_walls(const State& state);
   void let_slide(const State& state);
+  void begin_settling(const State& state);
   void find_slip(const State& state);
   void find_masses(const State& state);
   void raise_masses();

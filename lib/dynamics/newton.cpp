@@ -23,6 +23,7 @@ constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalv
               kMostShortened = 60;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
+constexpr double kPolish = 1e-6;  // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;    // of a rigid body's inradius
 constexpr double kNodeReach = 8;  // of the shortest edge
 // Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
@@ -35,7 +36,7 @@ constexpr double kPivotNoise = 1e-11;
 void Equilibrium::NewtonPath::fields(Archive& archive) {
   archive("until", until)("done", done)("step", step)("damped", damped)("shift", shift);
   archive("iteration", iteration)("all", all)("in_step", in_step)("shortened", shortened);
-  archive("residual", residual)("at_start", at_start);
+  archive("residual", residual)("at_start", at_start)("polishing", polishing);
   archive.sized("x_done", x_done).sized("base", base).sized("x", x);
 }
 
@@ -131,16 +132,32 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
     state.time = time;
     find_forces(state, before);
     if (path.iteration == 0) {
+      path.polishing = false;
       path.base = state.x;
       if (path.damped) path.shift = first_shift();
       path.in_step = 0;
     }
     double now = shifted_residual(state, path);
     if (!std::isfinite(now)) return Verdict::failed;
-    if (path.iteration > 0 && reached(state, result) && !(now < kFalling * path.residual)) {
-      return Verdict::found;
+    if (path.iteration > 0) {
+      const bool good = reached(state, result);
+      if (path.polishing && !(now < kFalling * path.residual)) {
+        if (good && now <= path.residual) return Verdict::found;
+        // The equilibrium before was better.
+        state.x = path.base;
+        find_forces(state, before);
+        return reached(state, result) ? Verdict::found : Verdict::failed;
+      }
+      if (good) {
+        path.polishing = true;
+        path.base = state.x;
+        path.shift *= kPolish;
+        path.in_step = 0;
+        now = shifted_residual(state, path);
+      }
     }
-    if (path.damped && path.in_step > 0 && now <= kStepTolerance * path.at_start) {
+    if (path.damped && !path.polishing && path.in_step > 0 &&
+        now <= kStepTolerance * path.at_start) {
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
@@ -174,7 +191,7 @@ void Equilibrium::go(State& state, const State& before, const NewtonPath& path) 
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
-    if (!path.damped || path.iteration == 0 || halved == kMostHalvings) return;
+    if (!path.damped || path.polishing || path.iteration == 0 || halved == kMostHalvings) return;
     find_forces(state, before);
     if (shifted_residual(state, path) < growth * path.residual) return;
   }

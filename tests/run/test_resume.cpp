@@ -312,7 +312,7 @@ TEST_CASE("a static run that is stopped within its load steps goes on there, bit
     REQUIRE(whole.run() == Run::Status::done);
     std::int64_t longest = 0;
     for (const LoadStep& s : whole.load_steps()) longest = std::max(longest, s.iterations);
-    REQUIRE(longest > 50);
+    REQUIRE(longest > 2);
     int stops = 0;
     Run::Status status = Run::Status::interrupted;
     for (; status == Run::Status::interrupted && stops < 100; ++stops) {
@@ -332,7 +332,7 @@ TEST_CASE("a static run that is stopped within its load steps goes on there, bit
       }
     }
     REQUIRE(status == Run::Status::done);
-    CHECK(stops > 2);
+    CHECK(stops > 1);
     check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd"});
   }
 }
@@ -347,7 +347,7 @@ TEST_CASE("checkpoints within a load step change nothing, and a run goes on from
   int looks = 0;
   bool copied = false;
   Run whole(scene, {.folder = folder / "whole", .stop_if = [&] {
-                      if (++looks % 500 == 0 && !copied) {
+                      if (++looks % 5 == 0 && !copied) {
                         std::filesystem::copy(folder / "whole", folder / "killed",
                                               std::filesystem::copy_options::recursive);
                         copied = true;

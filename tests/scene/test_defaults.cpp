@@ -156,6 +156,10 @@ std::vector<Default> meshed_defaults() {
   const Json disc = meshed({{"disc", {{"radius", 1}, {"cells", 4}}}});
   const Json half = meshed({{"half_disc", {{"radius", 1}, {"fine", 0.2}, {"cells", 4}}}});
   const Json voronoi = meshed({{"voronoi", {{"size", {2, 1}}, {"cells", 12}}}});
+  const Json notched = meshed({{"voronoi",
+                                {{"polygon", {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}},
+                                 {"cells", 4},
+                                 {"lloyd", 0}}}});
   return {
       {"/properties/materials/additionalProperties/properties/plane", rectangle(),
        "/materials/rock/plane", "strain"},
@@ -191,6 +195,11 @@ std::vector<Default> meshed_defaults() {
       {"/definitions/mesh/properties/voronoi/properties/shortest_edge",
        with(voronoi, "/bodies/0/mesh/voronoi/lloyd", 0), "/bodies/0/mesh/voronoi/shortest_edge",
        0.3},
+      {"/definitions/mesh/properties/voronoi/properties/convex", notched,
+       "/bodies/0/mesh/voronoi/convex", true},
+      {"/definitions/mesh/properties/voronoi/properties/smallest_angle",
+       with(voronoi, "/bodies/0/mesh/voronoi/lloyd", 0), "/bodies/0/mesh/voronoi/smallest_angle",
+       1.0},
       {"/definitions/deformable_body/properties/angle", rectangle(), "/bodies/0/angle", 0.1},
       {"/definitions/deformable_body/properties/motion", rectangle(), "/bodies/0/motion", nullptr},
       {"/definitions/deformable_body/properties/velocity",

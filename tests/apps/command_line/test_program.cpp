@@ -185,7 +185,7 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
   for (const Json& step : json["load_steps"]) {
     CHECK(step["residual"] <= 1e-6);
     CHECK(step["imbalance"] <= 1e-6);
-    CHECK(step["iterations"] > 10);
+    CHECK(step["iterations"] > 1);
   }
   CHECK(read_history(folder / "blocks/history.csv").columns[0].size() == 4);
   CHECK(content(folder / "blocks/surfaces.pvd").find("surfaces_000003.vtu") != std::string::npos);
@@ -301,7 +301,7 @@ TEST_CASE("bodies pressed in a box: balance of each, mirror images", "[program]"
   const Result r = run({"run", scene, "-o", folder / "press"}, folder);
   INFO(r.err);
   REQUIRE(r.code == 0);
-  CHECK(r.err.find("steps of relaxation, residual ") != std::string::npos);
+  CHECK(r.err.find("iterations, residual ") != std::string::npos);
   CHECK(r.out.find("force balance: ") != std::string::npos);
   const Json balance = Json::parse(content(folder / "press/run.json"))["balance"];
   REQUIRE(balance.size() == 5);
