@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
+#include "apps/polygon/batch.hpp"
 #include "apps/polygon/input.hpp"
 #include "geometry/exact/pair_methods.hpp"
 #include "geometry/integrals/penetration.hpp"
@@ -80,17 +81,17 @@ void print_table(const Json& list) {
 
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a wrong option is reported once, not for each line
-  int code = exit_code::done;
-  for_each_line(options.batch, kPairForm, [&](const BatchLine& line) {
+  return print_answers(options.batch, kPairForm, [&](const BatchLine& line) -> BatchAnswer {
     const Json name = line.has_count ? Json(line.name) : Json();
     Json object{{"name", name}};
+    BatchAnswer answer;
     const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
       object = {{"name", name},
                 {"error", reason},
                 {"polygon", which},
                 {"vertex", vertex},
                 {"line", line.number}};
-      code = exit_code::bad_input;
+      answer.refused = true;
     };
     const char* which = "a";
     try {
@@ -106,9 +107,9 @@ int batch(const ContactOptions& options) {
     } catch (const InvalidPolygon& error) {
       refuse(error.what(), which, error.vertex());
     }
-    fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
+    answer.text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return answer;
   });
-  return code;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/commands.hpp"
+#include "apps/polygon/batch.hpp"
 #include "apps/polygon/input.hpp"
 #include "apps/process/work_line.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
@@ -180,8 +181,7 @@ void print_table(const Analysis& a, const std::string& reference_name) {
 constexpr const char* kRingForm = "name n x y ...";
 
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {
-  int code = exit_code::done;
-  for_each_line(options.batch, kRingForm, [&](const BatchLine& line) {
+  return print_answers(options.batch, kRingForm, [&](const BatchLine& line) -> BatchAnswer {
     const Json name = line.has_count ? Json(line.name) : Json();
     Json object{{"name", name}};
     try {
@@ -191,11 +191,10 @@ int batch(const PolygonOptions& options, const PotentialChoice& choice) {
       object.update(to_json(analyse(Polygon(std::move(ring)), choice)));
     } catch (const InvalidPolygon& error) {
       object.update({{"error", error.what()}, {"vertex", error.vertex()}, {"line", line.number}});
-      code = exit_code::bad_input;
+      return {text(object, -1), true};
     }
-    fmt::print("{}\n", text(object, -1));
+    return {text(object, -1)};
   });
-  return code;
 }
 
 // The properties of the polygon of a file. Throws PolygonError, so that each refusal has its place.

@@ -20,6 +20,8 @@
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/distance_field.hpp"
+#include "geometry/spatial/ring_tree.hpp"
+#include "geometry/spatial/strip.hpp"
 
 namespace apothem {
 
@@ -101,6 +103,8 @@ class DistanceOutline {
       turn_[i] = turn_at(i);
       if (turn_[i] < 0) reflex_.push_back(i);
     }
+    trees_.clear();
+    if (n_ > kFew) plant_trees();
   }
 
   [[nodiscard]] int size() const { return n_; }
@@ -114,6 +118,35 @@ class DistanceOutline {
   [[nodiscard]] const Real& length(int i) const { return length_[i]; }
   /// The vertices at which the outline turns right.
   [[nodiscard]] const std::vector<int>& reflex() const { return reflex_; }
+
+  /// Finds edges and reflex vertices, in ascending order. It leaves out none that are within a
+  /// distance of the segment from p to q. Returns true if these are all there are, as they are
+  /// where there are few.
+  bool find_near(const Point& p, const Point& q, double distance, std::vector<int>& edges,
+                 std::vector<int>& reflex) const {
+    edges.clear(), reflex.clear();
+    const Strip strip(rounded(p), rounded(q), distance);
+    const auto meets = [&](const Box& box) { return strip.meets(box); };
+    int first = 0;
+    for (const RingTree& ring : trees_) {
+      ring.each(meets, [&](int e) { edges.push_back(first + e); });
+      first += ring.size();
+    }
+    if (trees_.empty()) {
+      for (int i = 0; i < n_; ++i) edges.push_back(i);
+    }
+    if (static_cast<int>(edges.size()) == n_) {
+      reflex = reflex_;
+      return true;
+    }
+    for (const int i : edges) {
+      if (turn_[i] < 0) reflex.push_back(i);
+      if (turn_[after(i)] < 0) reflex.push_back(after(i));
+    }
+    std::sort(reflex.begin(), reflex.end());
+    reflex.erase(std::unique(reflex.begin(), reflex.end()), reflex.end());
+    return false;
+  }
 
   /// The height of vertex v over the line of edge i, or 0 if the vertex is not in front of it.
   /// Both cells that the parabola between the two separates use this number.
@@ -175,6 +208,20 @@ class DistanceOutline {
   }
 
  private:
+  // With so few vertices, to look at all of them costs less than to look for those that are near.
+  static constexpr int kFew = 32;
+
+  static Vec2 rounded(const Point& p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y)};
+  }
+  void plant_trees() {
+    for_each_ring(links(), n_, [&](int begin, int end) {
+      std::vector<Vec2> ring;
+      for (int i = begin; i < end; ++i) ring.push_back(rounded(vertex_[i]));
+      trees_.emplace_back(std::move(ring));
+    });
+  }
+
   // A sine above this value has the right sign whatever the round-off.
   static constexpr double kSure = 0x1p-40;
 
@@ -232,6 +279,7 @@ class DistanceOutline {
   std::vector<Real> length_;
   std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
   std::vector<int> reflex_;  // vertices with a right turn
+  std::vector<RingTree> trees_;  // of the edges of each ring, unless they are few
 };
 
 }  // namespace apothem

@@ -8,9 +8,10 @@
 // <= rho <= R(theta) between the normals of its two edges, in polar coordinates rho, theta about
 // the vertex. H is the lower envelope of one quadratic in tau per other feature. 1/R is the upper
 // envelope of such functions; multiplied by 1 + t^2 they are quadratics in t = tan(theta/2). The
-// cells tile the polygon. So the integral is, cell by cell, a signed sum over the edges of the
-// other polygon: each edge contributes the volume between itself and the foot of the cell, clamped
-// to the cell.
+// cells tile the polygon. A circle of radius H that touches an edge reaches no further than 2 H
+// from it, so that only features near an edge bound its cell. The integral is, cell by cell, a
+// signed sum over the edges of the other polygon: each edge contributes the volume between itself
+// and the foot of the cell, clamped to the cell.
 #pragma once
 
 #include <algorithm>
@@ -33,17 +34,22 @@ class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
   /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
-  /// a coordinate of the field is not finite, the result is NaN.
+  /// a coordinate is not finite, the result is NaN.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
     Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
     for (int i = 0; i < field.size; ++i) finite += 0 * field.x[i] + 0 * field.y[i];
+    for (size_t i = 0; i < x.size(); ++i) finite += 0 * x[i] + 0 * y[i];
     if (!(finite == 0)) return finite;
     outline_.load(field);
     capped_ = field.capped;
     reference_ = 1 / field.slope;
     ring_.clear();
-    for (size_t i = 0; i < x.size(); ++i) ring_.push_back({x[i], y[i]});
+    around_ = {};
+    for (size_t i = 0; i < x.size(); ++i) {
+      ring_.push_back({x[i], y[i]});
+      around_.include(static_cast<double>(x[i]), static_cast<double>(y[i]));
+    }
     Real volume = 0;
     if (outline_.size() < 3) return volume;
     for (int i = 0; i < outline_.size(); ++i) volume += edge_cell(i);
@@ -54,6 +60,9 @@ class DistanceVolume {
  private:
   using Point = PlanePoint<Real>;
   using Quadratic = apothem::Quadratic<Real>;
+
+  // More than one by far more than round-off.
+  static constexpr double kSure = 1 + 1e-9;
 
   // The volume of one cell, summed from its foot (low) and from its ceiling (high), and the sums of
   // the absolute values of the terms. Both sums are equal up to round-off, but if the ring passes
@@ -101,27 +110,83 @@ class DistanceVolume {
     return (b - a) / 18 * (5 * f(middle - step) + 8 * f(middle) + 5 * f(middle + step));
   }
 
+  // The largest value of the dot product of a direction with a point of the ring's box, seen from a
+  // point. Where it is negative the ring is behind a line.
+  [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
+    const auto dx = static_cast<double>(direction.x), dy = static_cast<double>(direction.y);
+    const auto x = static_cast<double>(from.x), y = static_cast<double>(from.y);
+    return dx * ((dx > 0 ? around_.x1 : around_.x0) - x) +
+           dy * ((dy > 0 ? around_.y1 : around_.y0) - y);
+  }
+
+  // Makes the ceiling of a cell from the features near the segment from p to q. fill() puts those
+  // of near_edges_ and near_reflex_ into it, by add_border(). Distances from the segment that the
+  // ceiling has are at most `height(k)` on its piece k.
+  template <class Fill, class Height>
+  void raise_ceiling(const Point& p, const Point& q, const Real& length, const Fill& fill,
+                     const Height& height) {
+    const auto infinite = std::numeric_limits<double>::infinity();
+    highest_ = std::numeric_limits<Real>::infinity();
+    for (double distance = static_cast<double>(2 * length);;) {
+      const bool all = outline_.find_near(p, q, distance, near_edges_, near_reflex_);
+      fill();
+      lower_highest(height);
+      // What is further than twice the ceiling is behind it.
+      const double far = kSure * 2 * static_cast<double>(highest_);
+      if (all || far <= distance) return;
+      distance = far < infinite ? far : 4 * distance;
+    }
+  }
+
+  // Lowers highest_ to the largest distance of the ceiling.
+  template <class Height>
+  void lower_highest(const Height& height) {
+    Real highest = 0;
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      if (!ceiling_[k].known) return;
+      highest = std::max(highest, Real(height(k)));
+    }
+    highest_ = std::min(highest_, highest);
+  }
+
+  // Adds a function to the ceiling, unless its distances, which are at least `least`, are above it.
+  template <class Height>
+  void add_border(const Quadratic& f, const Real& from, const Real& to, const Real& least,
+                  const Height& height) {
+    if (!(least > kSure * highest_) && ceiling_.insert(f, from, to)) lower_highest(height);
+  }
+
   // Volume over the cell of edge i.
   Real edge_cell(int i) {
     const Point t = outline_.tangent(i);
     const Point& n = outline_.normal(i);
     const Point& start = outline_.vertex(i);
+    const Point& stop = outline_.vertex(outline_.after(i));
     const Real& length = outline_.length(i);
-    ceiling_.reset(0, length);
-    for (int j = 0; j < outline_.size(); ++j) {
-      typename DistanceOutline<Real>::Bisector line;
-      if (j == i || !outline_.bisector(i, j, line)) continue;
-      ceiling_.insert({line.origin, {line.start, line.rise, 0}, j}, line.from, line.to);
-    }
-    for (const int v : outline_.reflex()) {
-      if (v == i || v == outline_.after(i)) continue;
-      const Real h = outline_.height(i, v);
-      const Real curvature = 1 / (2 * h);
-      if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
-        const Real tau = dot(t, outline_.vertex(v) - start);
-        ceiling_.insert({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, length);
+    if (ahead(t, start) < 0 || ahead(n, start) < 0 || ahead(t * Real(-1), stop) < 0) return 0;
+    const auto height = [&](size_t k) {
+      const Quadratic& f = ceiling_[k].function;
+      return std::max(f(ceiling_[k].from), f(ceiling_.end(k)));
+    };
+    const auto fill = [&] {
+      ceiling_.reset(0, length);
+      for (const int j : near_edges_) {
+        typename DistanceOutline<Real>::Bisector line;
+        if (j == i || !outline_.bisector(i, j, line)) continue;
+        const Quadratic f{line.origin, {line.start, line.rise, 0}, j};
+        add_border(f, line.from, line.to, std::min(f(line.from), f(line.to)), height);
       }
-    }
+      for (const int v : near_reflex_) {
+        if (v == i || v == outline_.after(i)) continue;
+        const Real h = outline_.height(i, v);
+        const Real curvature = 1 / (2 * h);
+        if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
+          const Real tau = dot(t, outline_.vertex(v) - start);
+          add_border({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, length, h / 2, height);
+        }
+      }
+    };
+    raise_ceiling(start, stop, length, fill, height);
     Sums sums;
     for (size_t k = 0; k < ring_.size(); ++k) {
       const Point p = ring_[k] - start;
@@ -177,25 +242,31 @@ class DistanceVolume {
     const int before = outline_.before(v);
     const Point& left = outline_.normal(before);
     const Point& right = outline_.normal(v);
+    // The cell is between the normals, on the left of one and on the right of the other.
+    if (ahead({-right.y, right.x}, corner) < 0 || ahead({left.y, -left.x}, corner) < 0) return 0;
     const Point middle =
         dot(left, right) >= 0 ? left + right : outline_.tangent(before) - outline_.tangent(v);
     using std::sqrt;
     axis_ = middle * (1 / sqrt(dot(middle, middle)));
     const Real t0 = half_tangent(in_frame(right));
     const Real t1 = half_tangent(in_frame(left));
-    ceiling_.reset(t0, t1);
-    reaches_.clear();
-    for (int j = 0; j < outline_.size(); ++j) {
-      if (j != v && j != before) reach_to_edge(v, j, t0, t1);
-    }
-    for (const int w : outline_.reflex()) {
-      if (w == v) continue;
-      // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit direction.
-      const Point p = in_frame(outline_.vertex(w) - corner);
-      const Real d2 = dot(p, p) / 2;
-      reaches_.push_back({false, p, d2, 0, 0});
-      insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1);
-    }
+    const auto fill = [&] {
+      ceiling_.reset(t0, t1);
+      reaches_.clear();
+      for (const int j : near_edges_) {
+        if (j != v && j != before) reach_to_edge(v, j, t0, t1);
+      }
+      for (const int w : near_reflex_) {
+        if (w == v) continue;
+        // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit
+        // direction.
+        const Point p = in_frame(outline_.vertex(w) - corner);
+        const Real d2 = dot(p, p) / 2;
+        reaches_.push_back({false, p, d2, 0, 0});
+        insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1, sqrt(d2 / 2));
+      }
+    };
+    raise_ceiling(corner, corner, outline_.length(v), fill, [&](size_t k) { return reach(k); });
     Sums sums;
     Real coverage = 0;    // winding number of the ring about the vertex, in the middle direction
     bool inside = false;  // whether the ring has a vertex inside the cell or enters it sideways
@@ -263,9 +334,17 @@ class DistanceVolume {
 
   // Adds the function -(1 + t^2)/rho of the last element of reaches_ to the ceiling. The sign makes
   // the nearest border the lower envelope.
-  void insert_reach(Quadratic inverse, const Real& t0, const Real& t1) {
+  void insert_reach(Quadratic inverse, const Real& t0, const Real& t1, const Real& least) {
     inverse.id = static_cast<int>(reaches_.size()) - 1;
-    ceiling_.insert(inverse, t0, t1);
+    add_border(inverse, t0, t1, least, [&](size_t k) { return reach(k); });
+  }
+  // The largest distance of a piece of the ceiling from the vertex, which is at one of its ends.
+  [[nodiscard]] Real reach(size_t k) const {
+    const auto at = [&](const Real& t) {
+      const Real inverse = -ceiling_[k].function(t);
+      return inverse > 0 ? Real((1 + t * t) / inverse) : std::numeric_limits<Real>::infinity();
+    };
+    return std::max(at(ceiling_[k].from), at(ceiling_.end(k)));
   }
 
   // Adds the parabola between the vertex v and edge j, where the circle touches j within the edge.
@@ -302,10 +381,10 @@ class DistanceVolume {
             ? Quadratic{-ec / es, {0, 0, -2 * es * es / d}, 0}
             : Quadratic{0, {-2 * ec * ec / d, -4 * ec * es / d, -2 * es * es / d}, 0};
     if (below0 != 0 && below1 != 0 && (below0 > 0) != (below1 > 0)) {
-      insert_reach(inverse, std::max(t0, from), t1);
-      insert_reach(inverse, t0, std::min(t1, to));
+      insert_reach(inverse, std::max(t0, from), t1, d / 2);
+      insert_reach(inverse, t0, std::min(t1, to), d / 2);
     } else {
-      insert_reach(inverse, std::max(t0, from), std::min(t1, to));
+      insert_reach(inverse, std::max(t0, from), std::min(t1, to), d / 2);
     }
   }
 
@@ -390,6 +469,9 @@ class DistanceVolume {
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
+  Box around_;                                 // the ring
+  std::vector<int> near_edges_, near_reflex_;  // of the present cell
+  Real highest_{};                             // no more than this is the ceiling's distance
   std::vector<Real> cuts_;
   PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
   std::vector<Reach> reaches_;                 // borders of the present vertex's cell

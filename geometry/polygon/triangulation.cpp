@@ -2,8 +2,13 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/hilbert_sort.h>
+#include <CGAL/property_map.h>
+
+#include <algorithm>
 
 #include "geometry/polygon/cyclic.hpp"
 
@@ -21,15 +26,36 @@ using Triangulation =
                                                CGAL::Triangulation_data_structure_2<Vertex, Face>,
                                                CGAL::No_constraint_intersection_tag>;
 
+// Vertices of larger rings are inserted along a curve through the plane, because along a ring such
+// as a narrow band, all triangles between its borders may change with every vertex.
+constexpr size_t kLarge = 1000;
+
+// The order in which the vertices of a ring are inserted.
+std::vector<size_t> insertion_order(std::span<const Vec2> ring) {
+  using Place = std::pair<Kernel::Point_2, size_t>;
+  std::vector<Place> places;
+  for (size_t i = 0; i < ring.size(); ++i) places.push_back({{ring[i].x(), ring[i].y()}, i});
+  if (ring.size() > kLarge) {
+    CGAL::hilbert_sort(
+        places.begin(), places.end(),
+        CGAL::Spatial_sort_traits_adapter_2<Kernel, CGAL::First_of_pair_property_map<Place>>());
+  }
+  std::vector<size_t> order;
+  for (const auto& [point, i] : places) order.push_back(i);
+  return order;
+}
+
 // Inserts a ring whose vertices have the numbers `first`, `first` + 1 and so on.
 void insert(Triangulation& triangulation, std::span<const Vec2> ring, int first) {
-  std::vector<Triangulation::Vertex_handle> vertices;
-  for (size_t i = 0; i < ring.size(); ++i) {
+  std::vector<Triangulation::Vertex_handle> vertices(ring.size());
+  Triangulation::Face_handle near;
+  for (const size_t i : insertion_order(ring)) {
     const size_t before = triangulation.number_of_vertices();
-    const auto near = i == 0 ? Triangulation::Face_handle() : vertices.back()->face();
-    vertices.push_back(triangulation.insert({ring[i].x(), ring[i].y()}, near));
+    vertices[i] = triangulation.insert({ring[i].x(), ring[i].y()}, near);
+    near = vertices[i]->face();
+    const int number = first + static_cast<int>(i);
     const bool is_new = triangulation.number_of_vertices() > before;
-    if (is_new) vertices.back()->info() = first + static_cast<int>(i);
+    vertices[i]->info() = is_new ? number : std::min(number, vertices[i]->info());
   }
   for (size_t i = 0; i < ring.size(); ++i) {
     triangulation.insert_constraint(vertices[i], after(vertices, i));

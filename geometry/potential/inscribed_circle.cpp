@@ -18,13 +18,15 @@
 // In a polygon with many vertices, the triangles may be long slivers that cross each other's wide
 // places. The search then starts with two triangles that cover the bounding box. Those that turn
 // out to lie outside are dropped, and a point counts only if it is inside. Triangles with long
-// lists of edges are halved without a linear programme. If that takes too many triangles, as it
-// does in a needle, the search starts anew with the triangulation.
+// lists of edges are halved without a linear programme. A long bounding box is first halved into
+// boxes that are not, because halving long triangles leaves needles. If the search takes too many
+// triangles, as it does in a needle, it starts anew with the triangulation.
 #include "geometry/potential/inscribed_circle.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <random>
 #include <span>
@@ -33,27 +35,28 @@
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/triangulation.hpp"
+#include "geometry/potential/corridors.hpp"
 #include "geometry/potential/edge_distance.hpp"
 #include "geometry/potential/highest_point.hpp"
+#include "geometry/spatial/ring_tree.hpp"
 
 namespace apothem {
 namespace {
 
 // All lengths below are divided by the polygon's size, rounded up to a power of two, so that the
 // division is exact.
-constexpr double kNoise = 0x1p-50;        // larger than the round-off of a distance
-constexpr double kSameRadius = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
-constexpr double kSmallest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
-constexpr double kSamePlace = 1e-6;       // centres closer than this fraction of the radius are one
-constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
-constexpr size_t kManyEdges = 200;  // a search for a polygon with more edges starts with its box
+constexpr double kNoise = 0x1p-50;     // larger than the round-off of a distance
+constexpr double kSameRadius = 1e-13;  // relative tolerance for equal radii, as in potential.cpp
+constexpr double kSmallest = 0x1p-49;  // smallest resolved radius, as in potential.cpp
+constexpr double kSamePlace = 1e-6;    // centres closer than this fraction of the radius are one
+constexpr size_t kManyEdges = 200;     // a search for a polygon with more edges starts with its box
 constexpr size_t kCellsPerReport = 100;
 constexpr size_t kMostCells = 2000;  // per edge; then that search is given up
 constexpr size_t kLongList = 64;     // with more edges in its list, a triangle is usually halved
 constexpr double kSimilar = .7;      // unless halving leaves more than this fraction of the list
 constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as zero
-constexpr double kInTheWay = .5;  // a circle that moves towards an edge at this rate stops at once
 constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
+constexpr double kLong = 8;          // a box longer than so many times its width is halved first
 // Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
 constexpr int kFewEdges = 100;
 
@@ -90,11 +93,6 @@ double corner_bound(const Cell& cell) {
   return std::min(a / std::sqrt(3.0), a * b * c / (2 * twice_area)) + kNoise;
 }
 
-// The two ends of a segment of centres; they are equal for an isolated centre.
-struct Centre {
-  Vec2 first, last;
-};
-
 class Search {
  public:
   /// Where a search starts: with a triangulation, or with two triangles around the polygon.
@@ -111,11 +109,12 @@ class Search {
         if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
       }
       if (polygon.has_holes()) links_.add(static_cast<int>(edges_.size() - first));
+      std::vector<Vec2> starts;
+      for (size_t e = first; e < edges_.size(); ++e) starts.push_back(edges_[e].start);
+      trees_.emplace_back(std::move(starts));
       ends_.push_back(polygon.ring_start(k + 1));
     }
-    if (beyond_) {
-      cover_box();
-    } else {
+    if (!beyond_) {
       for (const Triangle& t : triangulate(polygon)) {
         Cell cell{{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]}, 0};
         cell.bound = corner_bound(cell);
@@ -135,6 +134,7 @@ class Search {
     std::mt19937 random;  // std::shuffle differs between standard libraries
     for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
 
+    if (beyond_) cover(box_of(vertices_), all);
     while (!queue_.empty() && queue_.front().bound >= radius_ - tolerance()) {
       std::ranges::pop_heap(queue_, lower);
       Cell cell = std::move(queue_.back());
@@ -161,16 +161,28 @@ class Search {
     std::ranges::stable_sort(found_,
                              [](const Found& a, const Found& b) { return a.height > b.height; });
     const double same = kSamePlace * radius_ + 16 * tolerance();
+    const Corridors corridors(edges_, trees_, 4 * tolerance());
     std::vector<Centre> centres;
+    std::multimap<double, Vec2> isolated;  // by x
+    std::vector<PolygonEdge> segments;
+    const auto is_known = [&](const Vec2& p) {
+      for (auto c = isolated.lower_bound(p.x() - same);
+           c != isolated.end() && c->first <= p.x() + same; ++c) {
+        if ((p - c->second).norm() <= same) return true;
+      }
+      return std::ranges::any_of(segments,
+                                 [&](const PolygonEdge& s) { return s.distance(p) <= same; });
+    };
     for (const Found& found : found_) {
       if (found.height < radius_ - tolerance()) break;
-      const bool known = std::ranges::any_of(centres, [&](const Centre& c) {
-        if (c.first == c.last) return (found.point - c.first).norm() <= same;
-        return PolygonEdge(c.first, c.last).distance(found.point) <= same;
-      });
-      if (known) continue;
-      Centre centre = corridor(found.point, found.height - tolerance());
-      if ((centre.last - centre.first).norm() <= same) centre = {found.point, found.point};
+      if (is_known(found.point)) continue;
+      Centre centre = corridors.longest(found.point, found.height - tolerance(), radius_);
+      if ((centre.last - centre.first).norm() <= same) {
+        centre = {found.point, found.point};
+        isolated.emplace(found.point.x(), found.point);
+      } else {
+        segments.emplace_back(centre.first, centre.last);
+      }
       centres.push_back(centre);
     }
     return centres;
@@ -192,12 +204,32 @@ class Search {
     return least;
   }
 
-  // Queues two triangles that cover the bounding box.
-  void cover_box() {
-    const Box box = box_of(vertices_);
+  // Queues two triangles that cover a box, or its halves if it is long. `edges` include all that
+  // are nearest to a point of the box.
+  void cover(const Box& box, const std::vector<int>& edges) {
     const Vec2 a(box.x0, box.y0), b(box.x1, box.y0), c(box.x1, box.y1), d(box.x0, box.y1);
-    queue_.push_back({{a, b, c}, HUGE_VAL});
-    queue_.push_back({{a, c, d}, HUGE_VAL});
+    const Vec2 sides = c - a;
+    if (!(sides.maxCoeff() > kLong * sides.minCoeff())) {
+      examine({{a, b, c}, HUGE_VAL}, edges);
+      examine({{a, c, d}, HUGE_VAL}, edges);
+      return;
+    }
+    const Vec2 middle = (a + c) / 2;
+    const double reach = sides.norm() / 2 + kNoise;
+    double least = HUGE_VAL;
+    for (const int e : edges) least = std::min(least, edges_[e].distance(middle));
+    std::vector<int> near;
+    for (const int e : edges) {
+      if (edges_[e].distance(middle) <= least + 2 * reach) near.push_back(e);
+    }
+    Box first = box, second = box;
+    if (sides.x() > sides.y()) {
+      first.x1 = second.x0 = middle.x();
+    } else {
+      first.y1 = second.y0 = middle.y();
+    }
+    cover(first, near);
+    cover(second, near);
   }
 
   // Tells on which side of the edge, or of the vertex at its nearer end, a point lies: 1 inside, -1
@@ -326,90 +358,13 @@ class Search {
     examine({{cell.corners[k], middle, q}, cell.bound}, cell.edges);
   }
 
-  // The longest segment through a centre that runs along two parallel edges which the circle
-  // touches, and that keeps the distance `radius` or more from all edges.
-  [[nodiscard]] Centre corridor(const Vec2& point, double radius) const {
-    std::vector<const PolygonEdge*> touched;
-    for (const PolygonEdge& edge : edges_) {
-      if (edge.distance(point) <= radius + 4 * tolerance()) touched.push_back(&edge);
-    }
-    Centre longest{point, point};
-    for (size_t i = 0; i < touched.size(); ++i) {
-      const PolygonEdge& a = *touched[i];
-      for (size_t j = i + 1; j < touched.size(); ++j) {
-        const PolygonEdge& b = *touched[j];
-        if (a.direction.dot(b.direction) > 0 ||
-            std::abs(cross(a.direction, b.direction)) > kNearlyParallel) {
-          continue;
-        }
-        Vec2 u = ((a.end - a.start) - (b.end - b.start)).normalized();
-        if (blocked(touched, point, u)) continue;
-        // Short edges give an inexact direction. It is improved with the points of the wall that
-        // the circles at both ends of the segment touch.
-        for (double length = 0, previous = -1; length > 2 * previous; u = along_wall(longest, u)) {
-          previous = length;
-          const Centre way = free_way(point, u, radius);
-          length = (way.last - way.first).norm();
-          if (length > (longest.last - longest.first).norm()) longest = way;
-        }
-      }
-    }
-    return longest;
-  }
-
-  // True if edges that the circle at a point touches block it in the directions u and -u, which is
-  // the case for most pairs of edges of a round polygon.
-  static bool blocked(const std::vector<const PolygonEdge*>& touched, const Vec2& point,
-                      const Vec2& u) {
-    bool ahead = false;
-    bool behind = false;
-    for (const PolygonEdge* edge : touched) {
-      const double rate = edge->distance_and_gradient(point).gradient.dot(u);
-      ahead = ahead || rate < -kInTheWay;
-      behind = behind || rate > kInTheWay;
-      if (ahead && behind) return true;
-    }
-    return false;
-  }
-
-  // The longest segment through a point in the direction u that keeps the distance `radius` or more
-  // from all edges.
-  [[nodiscard]] Centre free_way(const Vec2& point, const Vec2& u, double radius) const {
-    double ahead = HUGE_VAL;
-    double behind = HUGE_VAL;
-    for (const PolygonEdge& edge : edges_) {
-      ahead = std::min(ahead, edge.first_hit(point, u, radius));
-      behind = std::min(behind, edge.first_hit(point, -u, radius));
-    }
-    return {point - behind * u, point + ahead * u};
-  }
-
-  // Direction from the point of the right wall that the circle at the first end of the segment
-  // touches to the one that the circle at the last end touches.
-  [[nodiscard]] Vec2 along_wall(const Centre& way, const Vec2& u) const {
-    const auto foot = [&](const Vec2& centre) {
-      double lowest = HUGE_VAL;
-      Vec2 result = centre;
-      for (const PolygonEdge& edge : edges_) {
-        const auto [value, gradient] = edge.distance_and_gradient(centre);
-        if (value > radius_ + 4 * tolerance()) continue;
-        if (const double side = cross(gradient, u); side < lowest) {
-          lowest = side;
-          result = centre - value * gradient;
-        }
-      }
-      return result;
-    };
-    const Vec2 d = foot(way.last) - foot(way.first);
-    return d.dot(u) > 0 ? Vec2(d.normalized()) : u;
-  }
-
   bool beyond_;          // the cells may reach beyond the polygon
   size_t examined_ = 0;  // number of cells
   std::vector<Vec2> vertices_;
   std::vector<int> ends_;  // of the rings, in the list of vertices
   RingLinks links_;        // between the edges of a polygon with holes
   std::vector<PolygonEdge> edges_;
+  std::vector<RingTree> trees_;  // of the edges of each ring
   std::vector<Cell> queue_;
   std::vector<Found> found_;
   double radius_ = 0;

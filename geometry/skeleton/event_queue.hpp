@@ -5,11 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/skeleton/double_double.hpp"
-
 namespace apothem {
 
 /// A binary heap of items 0 to n - 1 by time. Simultaneous items are ordered by their numbers.
+template <class Time>
 class EventQueue {
  public:
   explicit EventQueue(int items) : times_(items), places_(items, kAbsent) {}
@@ -17,10 +16,10 @@ class EventQueue {
   [[nodiscard]] bool empty() const { return heap_.empty(); }
   /// The first item and its time.
   [[nodiscard]] int first() const { return heap_.front(); }
-  [[nodiscard]] const DoubleDouble& first_time() const { return times_[heap_.front()]; }
+  [[nodiscard]] const Time& first_time() const { return times_[heap_.front()]; }
 
   /// Adds an item, or changes its time.
-  void set(int item, const DoubleDouble& time) {
+  void set(int item, const Time& time) {
     times_[item] = time;
     if (places_[item] == kAbsent) {
       places_[item] = static_cast<int>(heap_.size());
@@ -68,8 +67,8 @@ class EventQueue {
     }
   }
 
-  std::vector<DoubleDouble> times_;  // per item
-  std::vector<int> places_;          // per item: its place in the heap
+  std::vector<Time> times_;  // per item
+  std::vector<int> places_;  // per item: its place in the heap
   std::vector<int> heap_;
 };
 

@@ -1,60 +1,60 @@
 #include "geometry/skeleton/exact_front.hpp"
 
 #include <algorithm>
-#include <map>
+#include <array>
 #include <utility>
 
-#include "geometry/polygon/cyclic.hpp"
-#include "geometry/polygon/disjoint_sets.hpp"
-#include "geometry/polygon/ring_links.hpp"
+#include "geometry/skeleton/event_queue.hpp"
 #include "geometry/skeleton/exact_planes.hpp"
 #include "geometry/skeleton/fine_frame.hpp"
+#include "geometry/skeleton/front_triangle.hpp"
+#include "geometry/skeleton/node_order.hpp"
 
 namespace apothem {
 namespace {
 
+using Time = std::optional<Fine>;
+
 constexpr int kNone = -1;
 constexpr int kProgressEvery = 100;
-
-using Triple = ExactPlanes::Triple;
-using Time = std::optional<Fine>;
+// The construction is given up after so many changes of triangles per vertex and in addition, as
+// that of the wavefront is.
+constexpr double kMostChanges = 500;
+constexpr double kMoreChanges = 1e5;
+// A discriminant that is smaller, as a share of its terms, is zero and nothing but round-off.
+const Fine kTangent = ldexp(Fine(1), -260);
 
 // A vertex of the front, from its node until the next event there.
 struct Vertex {
   Fine x, y, speed_x, speed_y, since;
   int before, after;  // edges on whose lines it moves
   int node;           // where it starts
-  // What determines it besides the line of the edge after it or before it: those themselves, or,
-  // between edges in line, the upright plane in which it moves, which may be none that is known.
-  int plane_before, plane_after;
-  bool hits;  // may reach other edges: it is not convex
-  bool fresh = true;
-  int front = kNone, next = kNone;  // the front that it belongs to, and the vertex after it
-  int born = 0;                     // step in which the piece from it to `next` came to be
-  Time shrink = std::nullopt;       // of that piece
-  Time hit = std::nullopt;          // when it reaches the first edge,
-  int target = kNone;               // whose piece starts in this vertex
-  int target_end = kNone;           // and ended in this one
-  std::array<double, 5> rough{};    // x, y, speeds and since
-  double fast = 0;                  // bound of its speed
+  // Between edges in line, the upright plane in which it moves, if it is known.
+  int upright;
+  // Where it is at the time of a step.
+  Fine now_x, now_y;
+  int seen = kNone;     // the last step that has asked for this
+  int spotted = kNone;  // the last step in which it is in a spot,
+  int spot = kNone;     // and in which one
 };
 
-// Where a vertex meets the line of a piece: beyond its start, in it, between, in its end, beyond.
-enum class Where { outside, start, between, end };
-
-struct Hit {
-  int at, piece;  // positions in the front
-  Where where;
-  Fine along;  // coordinate in the direction of the piece
+// A place in which corners of flat triangles are at the time of an event.
+struct Spot {
+  std::vector<int> vertices;
+  std::vector<int> hit = {};  // edges that these have reached between their ends
+  bool touched = false;       // the front changes here
+  int node = kNone;
 };
 
-// A part of the border between two points of the front at the time of an event.
-struct Segment {
-  int from, to;  // sets of vertices in the same place
-  int edge;
-  bool gone = false;
-  int follower = kNone, vertex = kNone;  // segment after it, vertex of the front in its start
-  int other = kNone;                     // another segment with the same start
+// A stretch on which two edges have met, from one spot to another along the first edge.
+struct Stretch {
+  int from, to;
+  int edge, other;
+};
+
+// A corner of a triangle.
+struct Corner {
+  int triangle, at;
 };
 
 class ExactFront {
@@ -65,478 +65,426 @@ class ExactFront {
         planes_(polygon),
         frame_(polygon),
         lines_(frame_.lines()),
+        triangles_(front_triangles(triangulate(polygon), polygon)),
+        queue_(static_cast<int>(triangles_.size())),
+        flat_at_(triangles_.size(), kNone),
+        fanned_at_(triangles_.size(), {kNone, kNone, kNone}),
         borders_(size_) {
-    for (const FineLine& line : lines_) {
-      rough_.push_back({static_cast<double>(line.tx), static_cast<double>(line.ty),
-                        static_cast<double>(line.offset)});
-    }
+    sound_ = !triangles_.empty();
     for (const Vec2& v : polygon.local_vertices()) nodes_.push_back({v, 0});
-    std::vector<std::vector<int>> loops(static_cast<size_t>(polygon.rings()));
-    for (int k = 0; k < polygon.rings(); ++k) {
-      for (int v = polygon.ring_start(k); v < polygon.ring_start(k + 1); ++v) {
-        loops[k].push_back(
-            add_vertex(frame_.x(v), frame_.y(v), 0, polygon.previous(v), v, v, size_ + v));
-      }
+    for (int v = 0; v < size_; ++v) {
+      add_vertex(frame_.x(v), frame_.y(v), polygon.previous(v), v, v, size_ + v);
     }
-    add_front(loops, 0);
+    for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) schedule(t);
   }
 
   std::optional<SkeletonParts> run(const Progress& progress) {
-    while (sound_ && !fronts_.empty()) {
-      const Front front = std::move(fronts_.back());
-      fronts_.pop_back();
-      if (++step_ > 8 * size_ + kProgressEvery) return std::nullopt;
-      advance(front);
+    while (sound_ && !queue_.empty()) {
+      if (++step_, changes_ > kMostChanges * size_ + kMoreChanges) return std::nullopt;
+      advance();
       if (progress && step_ % kProgressEvery == 0) {
         progress({"straight skeleton", std::nullopt});
       }
     }
     if (!sound_) return std::nullopt;
+    renumber(nodes_, borders_, events_, polygon_);
     return joined(std::move(nodes_), borders_, polygon_);
   }
 
  private:
-  // What moves from event to event on its own: a loop of vertices, or, in a polygon with holes, all
-  // of its loops, because an event may join two of them.
-  struct Front {
-    std::vector<int> vertices;
-    RingLinks links;  // none if it is one loop
-    Fine now;
-    int born;
-
-    [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
-    // The position of the vertex after the one at a position.
-    [[nodiscard]] int next(int at) const {
-      return apothem::next(links.after.empty() ? nullptr : &links, at, size());
-    }
-  };
-
   // ----------------------------------------------------------------------------------------------
-  // Vertices and pieces of edges between them
+  // Vertices
 
-  int add_vertex(const Fine& x, const Fine& y, const Fine& since, int before, int after, int node,
-                 int upright) {
+  int add_vertex(const Fine& x, const Fine& y, int before, int after, int node, int upright) {
     const FineLine &p = lines_[before], &q = lines_[after];
     const Fine turn = p.tx * q.ty - p.ty * q.tx;
     const Fine nx = -p.ty - q.ty, ny = p.tx + q.tx;
     const Fine square = (nx * nx + ny * ny) / 2;
     if (!(square > kFineNoise)) sound_ = false;  // an angle of 0 or 360 degrees
     const bool straight = abs(turn) < kFineNoise && planes_.parallel(before, after);
-    Vertex v{x, y, nx / square, ny / square, since, before, after, node, before, after, straight};
-    if (straight) v.plane_before = v.plane_after = upright;
-    v.hits = straight || turn < 0;
-    v.rough = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(v.speed_x),
-               static_cast<double>(v.speed_y), static_cast<double>(since)};
-    v.fast = std::abs(v.rough[2]) + std::abs(v.rough[3]);
-    vertices_.push_back(std::move(v));
+    vertices_.push_back({x, y, nx / square, ny / square, now_, before, after, node,
+                         straight ? upright : kNone, x, y, step_});
     return static_cast<int>(vertices_.size()) - 1;
   }
 
-  void add_front(const std::vector<std::vector<int>>& loops, const Fine& now) {
-    if (loops.empty()) return;
-    Front front{{}, {}, now, step_};
-    const int name = loops.front().front();
-    for (const std::vector<int>& loop : loops) {
-      if (loop.size() < 3) sound_ = false;
-      for (size_t i = 0; i < loop.size(); ++i) {
-        Vertex& v = vertices_[loop[i]];
-        v.front = name;
-        const int end = after(loop, i);
-        if (v.next == end) continue;
-        v.next = end;
-        v.born = step_;
-        v.shrink = shrink_time(v, now);
-      }
-      front.vertices.insert(front.vertices.end(), loop.begin(), loop.end());
-      if (loops.size() > 1) front.links.add(static_cast<int>(loop.size()));
+  // A vertex with its place at the time of this step.
+  const Vertex& seen(int vertex) {
+    Vertex& v = vertices_[vertex];
+    if (v.seen != step_) {
+      v.seen = step_;
+      const Fine age = now_ - v.since;
+      v.now_x = v.x + age * v.speed_x;
+      v.now_y = v.y + age * v.speed_y;
     }
-    fronts_.push_back(std::move(front));
-  }
-
-  [[nodiscard]] static Fine x_of(const Vertex& v, const Fine& t) {
-    return v.x + (t - v.since) * v.speed_x;
-  }
-  [[nodiscard]] static Fine y_of(const Vertex& v, const Fine& t) {
-    return v.y + (t - v.since) * v.speed_y;
-  }
-  // How far q is from p at a time, in the direction of an edge.
-  [[nodiscard]] Fine way(const Vertex& p, const Vertex& q, int edge, const Fine& t) const {
-    return lines_[edge].along(x_of(q, t) - x_of(p, t), y_of(q, t) - y_of(p, t));
-  }
-
-  // The time at which the piece from a vertex on has shrunk to nothing.
-  [[nodiscard]] Time shrink_time(const Vertex& u, const Fine& now) const {
-    const Vertex& v = vertices_[u.next];
-    const Fine rate = lines_[u.after].along(v.speed_x - u.speed_x, v.speed_y - u.speed_y);
-    if (!(rate < -kFineNoise)) return std::nullopt;
-    return now - way(u, v, u.after, now) / rate;
-  }
-  [[nodiscard]] Triple shrink_triple(const Vertex& u) const {
-    return {u.plane_before, u.after, vertices_[u.next].plane_after};
+    return v;
   }
 
   // ----------------------------------------------------------------------------------------------
-  // When a vertex hits an edge
+  // When a triangle becomes flat
 
-  [[nodiscard]] Triple hit_triple(const Vertex& c, int edge) const {
-    return {c.before, c.plane_after, edge};
+  void schedule(int triangle) {
+    ++changes_;
+    const FrontTriangle& t = triangles_[triangle];
+    const Time time = t.front_sides() == 0 ? crossing_time(t) : front_time(t);
+    time ? queue_.set(triangle, *time) : queue_.remove(triangle);
   }
 
-  [[nodiscard]] Time reach_time(const Vertex& c, int edge, const Fine& now) const {
-    const FineLine& line = lines_[edge];
-    const Fine rate = line.across(c.speed_x, c.speed_y) - 1;
-    const Fine height = line.across(x_of(c, now), y_of(c, now)) - line.offset - now;
-    if (!(rate < -kFineNoise) || height < -kFineNoise) return std::nullopt;
-    return now - height / rate;
-  }
-
-  // Where vertex c, which reaches the line of the piece from u on, meets it.
-  [[nodiscard]] Where place(const Vertex& c, const Vertex& u, const Fine& time) const {
-    const Vertex& v = vertices_[u.next];
-    const Triple here = hit_triple(c, u.after);
-    const auto side = [&](const Fine& beyond, int plane) {
-      if (abs(beyond) < kFineNoise && (!known(here) || plane == kNone || meets(here, plane))) {
-        return 0;
-      }
-      return beyond > 0 ? 1 : -1;
+  // A triangle with sides on the front is flat when one of these has shrunk to nothing, or the
+  // corner opposite to one reaches its line.
+  [[nodiscard]] Time front_time(const FrontTriangle& t) {
+    Time first;
+    const auto offer = [&](const Fine& size, const Fine& rate) {
+      if (!(rate < -kFineNoise)) return;
+      const Fine time = now_ - size / rate;
+      if (!first || time < *first) first = time;
     };
-    const int first = side(way(u, c, u.after, time), u.plane_before);
-    const int second = side(way(c, v, u.after, time), v.plane_after);
-    if (first < 0 || second < 0) return Where::outside;
-    return first == 0 ? Where::start : second == 0 ? Where::end : Where::between;
-  }
-  static bool known(const Triple& p) { return std::find(p.begin(), p.end(), kNone) == p.end(); }
-  [[nodiscard]] bool meets(const Triple& here, int plane) const {
-    return std::find(here.begin(), here.end(), plane) != here.end() ||
-           planes_.concurrent(here, plane);
+    for (int k = 0; k < 3; ++k) {
+      if (t.sides[k] >= 0) continue;
+      const FineLine& line = lines_[~t.sides[k]];
+      const Vertex &u = seen(t.corners[(k + 1) % 3]), &v = seen(t.corners[(k + 2) % 3]),
+                   &c = seen(t.corners[k]);
+      offer(line.along(v.now_x - u.now_x, v.now_y - u.now_y),
+            line.along(v.speed_x - u.speed_x, v.speed_y - u.speed_y));
+      offer(line.across(c.now_x, c.now_y) - line.offset - now_,
+            line.across(c.speed_x, c.speed_y) - 1);
+    }
+    return first;
   }
 
-  // True if doubles show that vertex c misses the piece from u on, or meets it after a time.
-  [[nodiscard]] bool misses(const Vertex& c, const Vertex& u, double now, double until) const {
-    const Vertex& v = vertices_[u.next];
-    if (!(c.fast < kFast && u.fast < kFast && v.fast < kFast)) return false;
-    const auto& [tx, ty, offset] = rough_[u.after];
-    const auto along = [tx = tx, ty = ty](const Vertex& p, double t) {
-      const auto& [x, y, vx, vy, since] = p.rough;
-      return tx * (x + (t - since) * vx) + ty * (y + (t - since) * vy);
-    };
-    const auto beside = [&](double t) {  // -1 before the piece, 1 behind it
-      const double place = along(c, t);
-      return place < along(u, t) - kRough ? -1 : place > along(v, t) + kRough ? 1 : 0;
-    };
-    const auto& [x, y, vx, vy, since] = c.rough;
-    const double rate = tx * vy - ty * vx - 1;
-    const double height =
-        tx * (y + (now - since) * vy) - ty * (x + (now - since) * vx) - offset - now;
-    if (rate > kRough || height < -kRough) return true;
-    if (rate < -kSlow) {
-      const double time = now - height / rate;
-      return time > until + kRough || beside(time) != 0;
-    }
-    const double last = std::min(until, 1.0) + kRough;  // no front lasts longer than 1
-    const int side = beside(now);
-    return height > kSlow * (last - now) + kRough || (side != 0 && beside(last) == side);
-  }
-  // Doubles are asked about vertices that are slower than kFast. Where one approaches a line faster
-  // than kSlow, the time has an error of 3e-11 for one of 1e-14 in the height, and a place 1e-9.
-  static constexpr double kFast = 30, kSlow = 1e-2, kRough = 1e-7;
-
-  // Looks whether vertex c hits the piece from u on before all that is known.
-  void look(Vertex& c, int piece, const Fine& now, double rough_now) {
-    const Vertex& u = vertices_[piece];
-    if (u.next == vertex_number(c) || piece == vertex_number(c)) return;
-    const double first = c.hit ? static_cast<double>(*c.hit) : HUGE_VAL;
-    if (misses(c, u, rough_now, first) || same_start(c, u)) return;
-    const Time time = reach_time(c, u.after, now);
-    if (!time || (c.hit && !(*time < *c.hit))) return;
-    if (place(c, u, *time) == Where::outside) return;
-    c.hit = time;
-    c.target = piece;
-    c.target_end = u.next;
-  }
-  // True if the piece from u on begins or ends where vertex c starts. There it is part of another
-  // corner of the region that the event has left, which only touches that of c.
-  [[nodiscard]] bool same_start(const Vertex& c, const Vertex& u) const {
-    return c.node == u.node || c.node == vertices_[u.next].node;
-  }
-  [[nodiscard]] int vertex_number(const Vertex& v) const {
-    return static_cast<int>(&v - vertices_.data());
+  // Without such sides, its area is a quadratic function of time, which is positive now.
+  [[nodiscard]] Time crossing_time(const FrontTriangle& t) {
+    const Vertex &a = seen(t.corners[0]), &b = seen(t.corners[1]), &c = seen(t.corners[2]);
+    const Fine px = b.now_x - a.now_x, py = b.now_y - a.now_y;
+    const Fine qx = c.now_x - a.now_x, qy = c.now_y - a.now_y;
+    const Fine ux = b.speed_x - a.speed_x, uy = b.speed_y - a.speed_y;
+    const Fine vx = c.speed_x - a.speed_x, vy = c.speed_y - a.speed_y;
+    const Fine area = px * qy - py * qx;
+    const Fine rate = px * vy - py * vx + ux * qy - uy * qx;
+    const Fine bend = ux * vy - uy * vx;
+    const Fine square = rate * rate, product = 4 * area * bend;
+    Fine discriminant = square - product;
+    if (abs(discriminant) < kTangent * (square + abs(product))) discriminant = 0;
+    if (discriminant < 0) return std::nullopt;
+    const Fine root = sqrt(discriminant);
+    if (rate < 0) return now_ + 2 * area / (root - rate);
+    if (bend < 0) return now_ - (rate + root) / (2 * bend);
+    return std::nullopt;
   }
 
-  // Brings up to date what the vertices of a front hit first.
-  void look_ahead(const Front& front) {
-    const auto now = static_cast<double>(front.now);
-    std::vector<int> fresh_pieces;
-    for (const int u : front.vertices) {
-      if (vertices_[u].born == front.born) fresh_pieces.push_back(u);
-    }
-    for (const int i : front.vertices) {
-      Vertex& c = vertices_[i];
-      if (!c.hits) continue;
-      const bool lost = c.hit && (vertices_[c.target].front != c.front ||
-                                  vertices_[c.target].next != c.target_end);
-      if (c.fresh || lost) {
-        c.fresh = false;
-        c.hit.reset();
-        for (const int u : front.vertices) look(c, u, front.now, now);
-      } else {
-        for (const int u : fresh_pieces) look(c, u, front.now, now);
-      }
-    }
+  [[nodiscard]] bool is_flat(int triangle) {
+    const FrontTriangle& t = triangles_[triangle];
+    const Vertex &a = seen(t.corners[0]), &b = seen(t.corners[1]), &c = seen(t.corners[2]);
+    const Fine px = b.now_x - a.now_x, py = b.now_y - a.now_y;
+    const Fine qx = c.now_x - a.now_x, qy = c.now_y - a.now_y;
+    const Fine longest = std::max({Fine(abs(px)), Fine(abs(py)), Fine(abs(qx)), Fine(abs(qy))});
+    return abs(px * qy - py * qx) < kFineNoise * longest || longest < kFineNoise;
   }
 
   // ----------------------------------------------------------------------------------------------
-  // The next events
+  // An event
 
-  // Of two times that cannot be told apart, whether they are the same.
-  [[nodiscard]] bool same_time(const Fine& s, const Triple& p, const Fine& t,
-                               const Triple& q) const {
-    if (!(abs(s - t) < kFineNoise)) return false;
-    return !known(p) || !known(q) || planes_.simultaneous(p, q);
+  void advance() {
+    take_first();
+    find_spots();
+    for (const int t : flat_) {
+      const int k = short_side(t);
+      if (k != kNone && flat_at_[t] == step_) contract(t, k);
+    }
+    while (!flat_.empty()) {
+      const int t = flat_.back();
+      flat_.pop_back();
+      if (flat_at_[t] == step_) take_out(t);
+    }
+    renew_front();
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    for (const int t : changed_) {
+      if (sound_ && is_there(t)) schedule(t);
+    }
+    changed_.clear();
   }
 
-  // Moves a front to its next event, and makes loops of what remains.
-  void advance(const Front& front) {
-    look_ahead(front);
-    Time time;
-    Triple triple{};
-    for (const int i : front.vertices) {
-      const Vertex& v = vertices_[i];
-      if (v.shrink && (!time || *v.shrink < *time)) time = v.shrink, triple = shrink_triple(v);
-      if (v.hit && (!time || *v.hit < *time)) {
-        time = v.hit;
-        triple = hit_triple(v, vertices_[v.target].after);
+  // Finds the triangles that are flat at the time of the next event, with all of their neighbours
+  // that are.
+  void take_first() {
+    now_ = queue_.first_time();
+    const Fine late = now_ + kFineNoise;
+    bool front = false;  // whether the time is that of an event of the front, without square roots
+    flat_.clear();
+    while (!queue_.empty() && queue_.first_time() < late) {
+      const int t = queue_.first();
+      if (!front && triangles_[t].front_sides() > 0) front = true, now_ = queue_.first_time();
+      queue_.remove(t);
+      flat_.push_back(t);
+    }
+    std::erase_if(flat_, [&](int t) {
+      if (is_flat(t)) return false;
+      changed_.push_back(t);
+      return true;
+    });
+    for (const int t : flat_) flat_at_[t] = step_;
+    for (size_t i = 0; i < flat_.size(); ++i) {
+      for (const int side : triangles_[flat_[i]].sides) {
+        if (side < 0 || flat_at_[side] == step_ || !is_flat(side)) continue;
+        queue_.remove(side);
+        flat_at_[side] = step_;
+        flat_.push_back(side);
       }
     }
-    if (!time) {
-      sound_ = false;
+  }
+
+  // Finds which corners of flat triangles are in the same place.
+  void find_spots() {
+    std::vector<int> members;
+    for (const int t : flat_) {
+      for (const int corner : triangles_[t].corners) {
+        if (vertices_[corner].spotted == step_) continue;
+        vertices_[corner].spotted = step_;
+        members.push_back(corner);
+      }
+    }
+    spots_.clear();
+    const auto by = [&](Fine Vertex::*coordinate) {
+      return [this, coordinate](int u, int v) {
+        return vertices_[u].*coordinate < vertices_[v].*coordinate;
+      };
+    };
+    const auto end_of_run = [&](auto from, auto end, Fine Vertex::*coordinate) {
+      const auto apart = [&](int u, int v) {
+        return !(vertices_[v].*coordinate - vertices_[u].*coordinate < kFineNoise);
+      };
+      const auto last = std::adjacent_find(from, end, apart);
+      return last == end ? end : last + 1;
+    };
+    std::sort(members.begin(), members.end(), by(&Vertex::now_x));
+    for (auto column = members.begin(); column != members.end();) {
+      const auto end = end_of_run(column, members.end(), &Vertex::now_x);
+      std::sort(column, end, by(&Vertex::now_y));
+      while (column != end) {
+        const auto above = end_of_run(column, end, &Vertex::now_y);
+        for (auto v = column; v != above; ++v) {
+          vertices_[*v].spot = static_cast<int>(spots_.size());
+        }
+        spots_.push_back({{column, above}});
+        spots_.back().touched = above - column > 1;
+        column = above;
+      }
+    }
+  }
+
+  [[nodiscard]] int spot(int triangle, int corner) const {
+    return vertices_[triangles_[triangle].corners[corner % 3]].spot;
+  }
+
+  // ----------------------------------------------------------------------------------------------
+  // Taking out flat triangles
+
+  [[nodiscard]] bool is_there(int triangle) const { return flat_at_[triangle] != kGone; }
+
+  // Takes a flat triangle out, or exchanges it for one that is not flat, or puts the triangles on
+  // the list that have to be taken out first.
+  void take_out(int triangle) {
+    if (const int k = short_side(triangle); k != kNone) return contract(triangle, k);
+    const int k = longest_side(triangle);
+    const int side = triangles_[triangle].sides[k];
+    if (side < 0) return divide(triangle, k);
+    if (flat_at_[side] != step_) {
+      flip(triangle, k);
+      flat_at_[triangle] = kNone;
       return;
     }
-    const int m = front.size();
-    std::vector<bool> shrunk(m);
-    std::vector<Hit> hits;
-    const Fine late = *time + kFineNoise;
-    for (int i = 0; i < m; ++i) {
-      const Vertex& v = vertices_[front.vertices[i]];
-      if (v.shrink && *v.shrink < late) {
-        shrunk[i] = same_time(*v.shrink, shrink_triple(v), *time, triple);
-      }
-      if (!v.hit || !(*v.hit < late)) continue;
-      const Triple own = hit_triple(v, vertices_[v.target].after);
-      if (same_time(*v.hit, own, *time, triple)) add_hits(front, i, *time, triple, hits);
-    }
-    meet(front, *time, shrunk, hits);
+    // Of flat neighbours, the one with the longer side comes first.
+    flat_.push_back(triangle);
+    if (longest_side(side) == triangles_[side].side_to(triangle)) flip(triangle, k);
+    flat_.push_back(side);
   }
 
-  // Everything that a vertex hits at a time.
-  void add_hits(const Front& front, int at, const Fine& time, const Triple& triple,
-                std::vector<Hit>& hits) const {
-    const Vertex& c = vertices_[front.vertices[at]];
-    const auto now = static_cast<double>(front.now);
-    for (int i = 0; i < front.size(); ++i) {
-      const Vertex& u = vertices_[front.vertices[i]];
-      if (i == at || front.next(i) == at) continue;
-      if (misses(c, u, now, static_cast<double>(time)) || same_start(c, u)) continue;
-      const Time reach = reach_time(c, u.after, front.now);
-      if (!reach || !same_time(*reach, hit_triple(c, u.after), time, triple)) continue;
-      const Where where = place(c, u, *reach);
-      if (where == Where::outside) continue;
-      hits.push_back({at, i, where, lines_[u.after].along(x_of(c, time), y_of(c, time))});
+  // A side without length, if there is one.
+  [[nodiscard]] int short_side(int triangle) const {
+    for (int k = 0; k < 3; ++k) {
+      if (spot(triangle, k + 1) == spot(triangle, k + 2)) return k;
     }
+    return kNone;
+  }
+
+  // The longest side of a flat triangle with three corners in different places: the one opposite to
+  // the corner between the others.
+  [[nodiscard]] int longest_side(int triangle) {
+    const FrontTriangle& t = triangles_[triangle];
+    const Vertex &a = seen(t.corners[0]), &b = seen(t.corners[1]), &c = seen(t.corners[2]);
+    const Fine dx = std::max({a.now_x, b.now_x, c.now_x}) - std::min({a.now_x, b.now_x, c.now_x});
+    const Fine dy = std::max({a.now_y, b.now_y, c.now_y}) - std::min({a.now_y, b.now_y, c.now_y});
+    const auto middle = [](const Fine& p, const Fine& q, const Fine& r) {
+      if ((q < p) != (r < p)) return 0;
+      return (p < q) != (r < q) ? 1 : 2;
+    };
+    return dx > dy ? middle(a.now_x, b.now_x, c.now_x) : middle(a.now_y, b.now_y, c.now_y);
+  }
+
+  // Side k has no length: it becomes a point, and the triangles beside it stretches.
+  void contract(int triangle, int k) {
+    const int other = triangles_[triangle].sides[k];
+    close(triangle, k);
+    if (other >= 0) close(other, triangles_[other].side_to(triangle));
+  }
+
+  void close(int triangle, int k) {
+    const FrontTriangle t = triangles_[triangle];
+    flat_at_[triangle] = kGone;
+    const int from = spot(triangle, k), to = spot(triangle, k + 1);
+    join(triangle, t.sides[(k + 2) % 3], t.sides[(k + 1) % 3], from, to);
+  }
+
+  // Corner k has reached the opposite side, which is on the front.
+  void divide(int triangle, int k) {
+    const FrontTriangle t = triangles_[triangle];
+    flat_at_[triangle] = kGone;
+    Spot& at = spots_[spot(triangle, k)];
+    at.touched = true;
+    at.hit.push_back(~t.sides[k]);
+    join(triangle, t.sides[k], t.sides[(k + 2) % 3], spot(triangle, k + 1), spot(triangle, k));
+    join(triangle, t.sides[k], t.sides[(k + 1) % 3], spot(triangle, k), spot(triangle, k + 2));
+  }
+
+  // What was on two sides of a triangle that is no more meets on a stretch: two triangles are
+  // neighbours, a triangle has a side on the front, or two edges of the front end. The first one
+  // runs between these spots.
+  void join(int triangle, int first, int second, int from, int to) {
+    const auto set = [&](int side, int by) {
+      triangles_[side].sides[triangles_[side].side_to(triangle)] = by;
+      changed_.push_back(side);
+    };
+    if (first >= 0) set(first, second);
+    if (second >= 0) set(second, first);
+    if (first >= 0 || second >= 0 || from == to) return;
+    spots_[from].touched = spots_[to].touched = true;
+    stretches_.push_back({from, to, ~first, ~second});
+  }
+
+  void flip(int triangle, int k) {
+    const int other = triangles_[triangle].sides[k];
+    exchange_diagonal(triangles_, triangle, k);
+    changed_.push_back(triangle);
+    changed_.push_back(other);
   }
 
   // ----------------------------------------------------------------------------------------------
   // What the front becomes
 
-  void meet(const Front& front, const Fine& time, const std::vector<bool>& shrunk,
-            std::vector<Hit>& hits) {
-    const int m = front.size();
-    DisjointSets same(m);
-    std::vector<bool> moved(m);  // vertices that take part
-    for (int i = 0; i < m; ++i) {
-      if (!shrunk[i]) continue;
-      same.join(i, front.next(i));
-      moved[i] = moved[front.next(i)] = true;
+  void renew_front() {
+    const bool any =
+        std::any_of(spots_.begin(), spots_.end(), [](const Spot& s) { return s.touched; });
+    if (!any) return;
+    for (Spot& spot : spots_) {
+      if (!spot.touched) continue;
+      if (!is_one_place(spot)) sound_ = false;
+      add_node(spot);
     }
-    for (const Hit& hit : hits) {
-      moved[hit.at] = true;
-      if (hit.where == Where::between) continue;
-      const int end = hit.where == Where::start ? hit.piece : front.next(hit.piece);
-      moved[end] = true;
-      same.join(hit.at, end);
+    for (const Stretch& s : stretches_) {
+      if (!planes_.parallel(s.edge, s.other)) sound_ = false;
+      const int from = spots_[s.from].node, to = spots_[s.to].node;
+      borders_[s.edge].push_back({to, from});
+      borders_[s.other].push_back({from, to});
     }
-    join_hits(front, hits, same);
-    std::vector<bool> touched(m);  // sets that take part
-    for (int i = 0; i < m; ++i) {
-      if (moved[i]) touched[same.find(i)] = true;
-    }
-    std::vector<Segment> segments = divided(front, shrunk, hits, same);
-    const std::vector<int> nodes = add_nodes(front, time, touched, same);
-    cancel(segments, touched, nodes);
-    follow(front, time, segments, touched, nodes);
-    close_loops(segments, time);
-  }
-
-  // Sorts the hits along each piece, and joins those in the same place.
-  void join_hits(const Front& front, std::vector<Hit>& hits, DisjointSets& same) {
-    std::erase_if(hits, [](const Hit& hit) { return hit.where != Where::between; });
-    const auto vertex = [&](const Hit& hit) -> const Vertex& {
-      return vertices_[front.vertices[hit.at]];
-    };
-    const auto edge = [&](const Hit& hit) { return vertices_[front.vertices[hit.piece]].after; };
-    std::sort(hits.begin(), hits.end(), [&](const Hit& p, const Hit& q) {
-      return p.piece != q.piece ? p.piece < q.piece : p.along < q.along;
-    });
-    for (size_t i = 0; i + 1 < hits.size(); ++i) {
-      const Hit &p = hits[i], &q = hits[i + 1];
-      if (p.piece != q.piece || !(q.along - p.along < kFineNoise)) continue;
-      const Triple here = hit_triple(vertex(p), edge(p));
-      const Triple there = hit_triple(vertex(q), edge(q));
-      if (!known(here) || !known(there) || (meets(here, there[0]) && meets(here, there[1]))) {
-        same.join(p.at, q.at);
+    stretches_.clear();
+    for (size_t i = 0; sound_ && i < changed_.size(); ++i) {
+      const int t = changed_[i];
+      for (int k = 0; k < 3 && is_there(t); ++k) {
+        const Vertex& v = vertices_[triangles_[t].corners[k]];
+        if (v.spotted != step_ || !spots_[v.spot].touched || fanned_at_[t][k] == step_) continue;
+        renew_fan({t, k}, spots_[v.spot]);
       }
     }
   }
 
-  // The pieces that are left, divided where they are hit.
-  std::vector<Segment> divided(const Front& front, const std::vector<bool>& shrunk,
-                               const std::vector<Hit>& hits, DisjointSets& same) {
-    const int m = front.size();
-    std::vector<Segment> segments;
-    auto hit = hits.begin();
-    for (int i = 0; i < m; ++i) {
-      if (shrunk[i]) continue;
-      const int edge = vertices_[front.vertices[i]].after;
-      int from = same.find(i);
-      const auto add = [&](int to) {
-        if (to == from) return;
-        segments.push_back({from, to, edge});
-        from = to;
-      };
-      const size_t first = segments.size();
-      for (; hit != hits.end() && hit->piece < i; ++hit) {
-      }
-      for (; hit != hits.end() && hit->piece == i; ++hit) add(same.find(hit->at));
-      add(same.find(front.next(i)));
-      // A piece of some length cannot have both ends in the same place.
-      if (segments.size() == first) sound_ = false;
+  // True if the planes of all vertices in a spot, and of the edges that they have reached, meet in
+  // one point. Of three planes, or of those that are not known, there is nothing to decide.
+  [[nodiscard]] bool is_one_place(const Spot& spot) {
+    std::vector<int> planes = spot.hit;
+    for (const int i : spot.vertices) {
+      const Vertex& v = vertices_[i];
+      planes.push_back(v.before);
+      planes.push_back(v.after);
+      if (v.upright != kNone) planes.push_back(v.upright);
     }
-    return segments;
+    std::sort(planes.begin(), planes.end());
+    planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+    return planes.size() <= 3 || planes_.concurrent(planes);
   }
 
-  // Makes a node of each set of vertices that takes part, and ends the arcs of these vertices
-  // there.
-  std::vector<int> add_nodes(const Front& front, const Fine& time, const std::vector<bool>& touched,
-                             DisjointSets& same) {
-    const int m = front.size();
-    std::vector<int> nodes(m, kNone);
-    for (int i = 0; i < m; ++i) {
-      const int set = same.find(i);
-      if (!touched[set]) continue;
-      Vertex& v = vertices_[front.vertices[i]];
-      v.front = kNone;
-      if (nodes[set] == kNone) {
-        nodes[set] = static_cast<int>(nodes_.size());
-        const Vertex& place = vertices_[front.vertices[set]];
-        nodes_.push_back(frame_.node(x_of(place, time), y_of(place, time), time));
-      }
-      borders_[v.before].push_back({v.node, nodes[set]});
-      borders_[v.after].push_back({nodes[set], v.node});
+  // Makes a node of a spot, and ends the arcs of its vertices there.
+  void add_node(Spot& spot) {
+    const Vertex& place = seen(spot.vertices.front());
+    spot.node = static_cast<int>(nodes_.size());
+    nodes_.push_back(frame_.node(place.now_x, place.now_y, now_));
+    int first = size_;
+    for (const int i : spot.vertices) {
+      const Vertex& v = vertices_[i];
+      borders_[v.before].push_back({v.node, spot.node});
+      borders_[v.after].push_back({spot.node, v.node});
+      first = std::min(first, v.after);
     }
-    return nodes;
+    events_.push_back({step_, first});
   }
 
-  // Takes out segments of two edges that have met, and makes arcs of them.
-  void cancel(std::vector<Segment>& segments, const std::vector<bool>& touched,
-              const std::vector<int>& nodes) {
-    std::map<std::pair<int, int>, int> between;
-    for (int s = 0; s < static_cast<int>(segments.size()); ++s) {
-      const auto [from, to] = std::pair(segments[s].from, segments[s].to);
-      if (!touched[from] || !touched[to]) continue;
-      if (!between.try_emplace({from, to}, s).second) sound_ = false;
-      const auto other = between.find({to, from});
-      if (other == between.end()) continue;
-      Segment &p = segments[s], &q = segments[other->second];
-      p.gone = q.gone = true;
-      borders_[p.edge].push_back({nodes[to], nodes[from]});
-      borders_[q.edge].push_back({nodes[from], nodes[to]});
+  // The triangles around a spot between two edges of the front get a new corner there.
+  void renew_fan(const Corner& start, const Spot& spot) {
+    std::vector<Corner> fan{start};
+    const int after = walk(fan, 2), before = walk(fan, 1);
+    if (!sound_ || before == after) {
+      sound_ = false;
+      return;
     }
-    std::erase_if(segments, [](const Segment& s) { return s.gone; });
+    const Vertex place = seen(spot.vertices.front());
+    const int vertex = add_vertex(place.now_x, place.now_y, before, after, spot.node, kNone);
+    for (const Corner& c : fan) {
+      triangles_[c.triangle].corners[c.at] = vertex;
+      changed_.push_back(c.triangle);
+    }
   }
 
-  // Finds which segment follows on which, and the vertices between them.
-  void follow(const Front& front, const Fine& time, std::vector<Segment>& segments,
-              const std::vector<bool>& touched, const std::vector<int>& nodes) {
-    std::vector<int> leaving(front.vertices.size(), kNone);  // the last segment from each set
-    for (int s = 0; s < static_cast<int>(segments.size()); ++s) {
-      segments[s].other = std::exchange(leaving[segments[s].from], s);
-    }
-    for (Segment& in : segments) {
-      for (int out = leaving[in.to]; out != kNone; out = segments[out].other) {
-        if (in.follower == kNone ||
-            earlier(segments[out].edge, segments[in.follower].edge, in.edge)) {
-          in.follower = out;
-        }
-      }
-      if (in.follower == kNone || segments[in.follower].vertex != kNone) {
+  // Goes on from the first corner of a fan to the edge of the front that bounds it, over the side
+  // that lies `turn` places after the corner. Returns the edge.
+  int walk(std::vector<Corner>& fan, int turn) {
+    Corner c = fan.front();
+    while (true) {
+      fanned_at_[c.triangle][c.at] = step_;
+      const int side = triangles_[c.triangle].sides[(c.at + turn) % 3];
+      if (side < 0) return ~side;
+      c = {side, (triangles_[side].side_to(c.triangle) + turn) % 3};
+      if (fanned_at_[side][c.at] == step_) {  // once around
         sound_ = false;
-        return;
+        return kNone;
       }
-      Segment& out = segments[in.follower];
-      if (!touched[in.to]) {
-        out.vertex = front.vertices[in.to];
-      } else if (in.edge == out.edge) {
-        sound_ = false;
-      } else {
-        const Vertex place = vertices_[front.vertices[in.to]];
-        out.vertex = add_vertex(x_of(place, time), y_of(place, time), time, in.edge, out.edge,
-                                nodes[in.to], kNone);
-      }
+      fan.push_back(c);
     }
   }
 
-  // True if edge p leaves a point before edge q, seen clockwise from the direction from which edge
-  // `in` has come: the interior is on its left, so it is followed by the first one.
-  [[nodiscard]] bool earlier(int p, int q, int in) const {
-    const auto sine = [&](int a, int b) -> Fine {
-      return lines_[a].tx * lines_[b].ty - lines_[a].ty * lines_[b].tx;
-    };
-    // The second half of the turn begins opposite to where the edge has come from.
-    const bool late_p = sine(in, p) < 0, late_q = sine(in, q) < 0;
-    if (late_p != late_q) return late_q;
-    return sine(p, q) < 0;
-  }
-
-  void close_loops(std::vector<Segment>& segments, const Fine& time) {
-    std::vector<std::vector<int>> loops;
-    for (size_t s = 0; sound_ && s < segments.size(); ++s) {
-      std::vector<int> loop;
-      for (int at = static_cast<int>(s); !segments[at].gone; at = segments[at].follower) {
-        segments[at].gone = true;
-        loop.push_back(segments[at].vertex);
-      }
-      if (loop.empty()) continue;
-      if (!polygon_.has_holes()) {
-        add_front({std::move(loop)}, time);
-      } else {
-        loops.push_back(std::move(loop));
-      }
-    }
-    if (sound_) add_front(loops, time);
-  }
+  static constexpr int kGone = -2;
 
   const Polygon& polygon_;
   int size_;
   ExactPlanes planes_;
   FineFrame frame_;
-  std::vector<FineLine> lines_;               // per edge of the polygon
-  std::vector<std::array<double, 3>> rough_;  // their tangents and offsets
-  bool sound_ = true;                         // false once something has happened that cannot be
+  std::vector<FineLine> lines_;  // per edge of the polygon
+  bool sound_ = true;            // false once something has happened that cannot be
   int step_ = 0;
+  double changes_ = 0;
+  Fine now_ = 0;
+  std::vector<FrontTriangle> triangles_;
+  EventQueue<Fine> queue_;    // of triangles
+  std::vector<int> flat_at_;  // per triangle: the last step in which it was flat, or kGone
+  std::vector<std::array<int, 3>> fanned_at_;  // per corner: the last step that has renewed it
   std::vector<Vertex> vertices_;
-  std::vector<Front> fronts_;
   std::vector<Skeleton::Node> nodes_;
+  std::vector<NodeEvent> events_;                 // per inner node
   std::vector<std::vector<FaceBorder>> borders_;  // per face
+
+  // Of the present step.
+  std::vector<int> flat_;     // triangles that have to be taken out
+  std::vector<int> changed_;  // triangles that have to be scheduled anew
+  std::vector<Spot> spots_;
+  std::vector<Stretch> stretches_;
 };
 
 }  // namespace

@@ -57,21 +57,28 @@ ExactPlanes::ExactPlanes(const Polygon& polygon) {
   }
 }
 
-bool ExactPlanes::simultaneous(const Triple& p, const Triple& q) const {
-  const auto [first, first_roots] = time(p);
-  const auto [second, second_roots] = time(q);
-  Roots difference;
-  for (const auto& [factor, radicand] : second_roots) {
-    difference.emplace_back(first * factor, radicand);
+bool ExactPlanes::concurrent(const std::vector<int>& planes) const {
+  const size_t count = planes.size();
+  for (size_t i = 1; i < count; ++i) {
+    for (size_t k = i + 1; k < count; ++k) {
+      if (!independent(planes[0], planes[i], planes[k])) continue;
+      return std::all_of(planes.begin() + 1, planes.end(), [&](int plane) {
+        return plane == planes[i] || plane == planes[k] ||
+               passes(plane, planes[0], planes[i], planes[k]);
+      });
+    }
   }
-  for (const auto& [factor, radicand] : first_roots) {
-    difference.emplace_back(-second * factor, radicand);
-  }
-  return is_zero(difference);
+  return true;
 }
 
-bool ExactPlanes::concurrent(const Triple& p, int plane) const {
-  const Plane &a = planes_[p[0]], &b = planes_[p[1]], &c = planes_[p[2]], &d = planes_[plane];
+bool ExactPlanes::independent(int p, int q, int r) const {
+  const Plane &a = planes_[p], &b = planes_[q], &c = planes_[r];
+  const auto cross = [](const Plane& u, const Plane& v) -> Whole { return u.a * v.b - u.b * v.a; };
+  return !is_zero({{cross(b, c), a.m}, {cross(c, a), b.m}, {cross(a, b), c.m}});
+}
+
+bool ExactPlanes::passes(int plane, int p, int q, int r) const {
+  const Plane &a = planes_[p], &b = planes_[q], &c = planes_[r], &d = planes_[plane];
   return is_zero({{minor(b, c, d), a.m},
                   {-minor(a, c, d), b.m},
                   {minor(a, b, d), c.m},
@@ -105,12 +112,6 @@ bool ExactPlanes::is_zero(const Roots& sum) {
 ExactPlanes::Whole ExactPlanes::minor(const Plane& p, const Plane& q, const Plane& r) {
   return p.c * (q.a * r.b - q.b * r.a) + q.c * (r.a * p.b - r.b * p.a) +
          r.c * (p.a * q.b - p.b * q.a);
-}
-
-std::pair<ExactPlanes::Whole, ExactPlanes::Roots> ExactPlanes::time(const Triple& p) const {
-  const Plane &a = planes_[p[0]], &b = planes_[p[1]], &c = planes_[p[2]];
-  const auto cross = [](const Plane& u, const Plane& v) -> Whole { return u.a * v.b - u.b * v.a; };
-  return {minor(a, b, c), {{cross(b, c), a.m}, {cross(c, a), b.m}, {cross(a, b), c.m}}};
 }
 
 }  // namespace apothem

@@ -3,14 +3,14 @@
 //
 // At the time t, the line of an edge consists of the points with a x + b y - sqrt(m) t = c, where
 // the coefficients a, b, c and m follow from the coordinates of the edge's ends, as they are given,
-// by sums and products, and are made whole numbers by a common power of two. What has to be decided
-// about two events is then whether a sum of square roots of whole numbers, with whole factors, is
-// zero. Roots whose radicands have a square as their product are rational multiples of each other,
-// and roots of different classes are linearly independent over the rationals (Besicovitch 1940). So
-// the sum is zero if and only if it is zero in each class, which whole numbers tell.
+// by sums and products, and are made whole numbers by a common power of two. Three such planes in
+// space and time meet in the place and at the time of an event. Whether a fourth one passes there
+// is then whether a sum of square roots of whole numbers, with whole factors, is zero. Roots whose
+// radicands have a square as their product are rational multiples of each other, and roots of
+// different classes are linearly independent over the rationals (Besicovitch 1940). So the sum is
+// zero if and only if it is zero in each class, which whole numbers tell.
 #pragma once
 
-#include <array>
 #include <boost/multiprecision/gmp.hpp>
 #include <utility>
 #include <vector>
@@ -25,13 +25,9 @@ class ExactPlanes {
  public:
   explicit ExactPlanes(const Polygon& polygon);
 
-  /// Three planes that meet in one point: where and when an event happens.
-  using Triple = std::array<int, 3>;
-
-  /// True if the two events happen at the same time.
-  [[nodiscard]] bool simultaneous(const Triple& p, const Triple& q) const;
-  /// True if a plane passes the point in which the three planes of an event meet.
-  [[nodiscard]] bool concurrent(const Triple& p, int plane) const;
+  /// True if all of these planes pass one point: they meet in one place at one time. There is
+  /// nothing to decide, and it counts as true, where no three of them determine a point.
+  [[nodiscard]] bool concurrent(const std::vector<int>& planes) const;
   /// True if the lines of two edges are parallel.
   [[nodiscard]] bool parallel(int e, int f) const;
 
@@ -45,9 +41,10 @@ class ExactPlanes {
 
   [[nodiscard]] static bool is_zero(const Roots& sum);
   [[nodiscard]] static Whole minor(const Plane& p, const Plane& q, const Plane& r);
-  /// The planes' determinant without the times, and the one without the constants, by which it has
-  /// to be divided for the time of the event.
-  [[nodiscard]] std::pair<Whole, Roots> time(const Triple& p) const;
+  /// True if three planes meet in one point alone.
+  [[nodiscard]] bool independent(int p, int q, int r) const;
+  /// True if a plane passes the point in which three others meet.
+  [[nodiscard]] bool passes(int plane, int p, int q, int r) const;
 
   std::vector<Plane> planes_;
 };

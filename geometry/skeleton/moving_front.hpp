@@ -3,13 +3,11 @@
 // straight skeleton.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 
-#include "geometry/polygon/triangulation.hpp"
 #include "geometry/skeleton/double_double.hpp"
+#include "geometry/skeleton/front_triangle.hpp"
 
 namespace apothem {
 
@@ -26,22 +24,6 @@ struct FrontVertex {
   int before, after;  // edges of the polygon on whose lines it moves: its front edges end and start
                       // in it
   int node;           // where it starts
-};
-
-/// A triangle inside the front. Side k is opposite to corner k. A side is the number of the
-/// neighbouring triangle, or, where the front is, ~e with the polygon's edge e.
-struct FrontTriangle {
-  std::array<int, 3> corners{}, sides{};
-
-  [[nodiscard]] int place_of(int corner) const {
-    return corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2;
-  }
-  [[nodiscard]] int side_to(int triangle) const {
-    return sides[0] == triangle ? 0 : sides[1] == triangle ? 1 : 2;
-  }
-  [[nodiscard]] int front_sides() const {
-    return static_cast<int>(std::count_if(sides.begin(), sides.end(), [](int s) { return s < 0; }));
-  }
 };
 
 /// The polygon's vertices, moved in random directions by at most `movement`, and so little that the

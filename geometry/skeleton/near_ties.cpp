@@ -4,6 +4,7 @@
 
 #include "geometry/polygon/segment.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
+#include "geometry/spatial/point_tree.hpp"
 
 namespace apothem {
 namespace {
@@ -48,10 +49,9 @@ bool has_near_ties(const Skeleton& skeleton, const Polygon& polygon, double move
   for (size_t i = n; i < nodes.size(); ++i) {
     if (arcs_at[i] != 3) return true;
   }
-  std::vector<int> order;  // of the inner nodes, from left to right
-  for (size_t i = n; i < nodes.size(); ++i) order.push_back(static_cast<int>(i));
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return nodes[i].point.x() < nodes[j].point.x(); });
+  std::vector<Vec2> inner;
+  for (size_t i = n; i < nodes.size(); ++i) inner.push_back(nodes[i].point);
+  const PointTree tree(std::move(inner));
   for (size_t k = n; k < skeleton.arcs.size(); ++k) {
     const Skeleton::Arc& arc = skeleton.arcs[k];
     const Vec2 &a = nodes[arc.start].point, &b = nodes[arc.end].point;
@@ -59,15 +59,13 @@ bool has_near_ties(const Skeleton& skeleton, const Polygon& polygon, double move
     if (std::abs(cross(left, right)) < kStraight && left.dot(right) > 0) return true;
     const double own = extent * std::max(reach[arc.start], reach[arc.end]);
     if ((b - a).norm() <= own) return true;
-    const double near = kNear * extent;
-    const double low = std::min(a.x(), b.x()) - near, high = std::max(a.x(), b.x()) + near;
-    for (auto i = std::partition_point(order.begin(), order.end(),
-                                       [&](int j) { return nodes[j].point.x() < low; });
-         i != order.end() && nodes[*i].point.x() <= high; ++i) {
-      if (*i == arc.start || *i == arc.end) continue;
-      const double apart = std::max(own, extent * reach[*i]);
-      if (nearest_on_segment(nodes[*i].point - a, b - a).distance2 <= apart * apart) return true;
-    }
+    const bool near = tree.any_near(a, b, kNear * extent, [&](int inner_node) {
+      const int i = inner_node + static_cast<int>(n);
+      if (i == arc.start || i == arc.end) return false;
+      const double apart = std::max(own, extent * reach[i]);
+      return nearest_on_segment(nodes[i].point - a, b - a).distance2 <= apart * apart;
+    });
+    if (near) return true;
   }
   return false;
 }

@@ -74,9 +74,6 @@ struct Frame {
 constexpr int kMany = 64;
 constexpr int kWavefrontAttempts = 3;
 
-// Polygons with more vertices than this are not constructed exactly, which takes n^2 steps.
-constexpr int kMostExact = 10000;
-
 // Round-off of a construction without moved vertices, as a movement of them.
 constexpr double kConstruction = 1e-13;
 
@@ -210,13 +207,11 @@ class Search {
         !broken_law(found_, polygon_)) {
       return true;
     }
-    if (polygon_.size() <= kMostExact) {
-      if (std::optional<SkeletonParts> parts = exact_skeleton(polygon_, progress_)) {
-        found_ = assemble(std::move(*parts), polygon_);
-        found_.attempts = found.attempts;
-        found_.exact = true;
-        if (!broken_law(found_, polygon_)) return true;
-      }
+    if (std::optional<SkeletonParts> parts = exact_skeleton(polygon_, progress_)) {
+      found_ = assemble(std::move(*parts), polygon_);
+      found_.attempts = found.attempts;
+      found_.exact = true;
+      if (!broken_law(found_, polygon_)) return true;
     }
     found_ = std::move(found);
     return true;

@@ -10,6 +10,7 @@
 #include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
 #include "geometry/skeleton/skeleton.hpp"
+#include "geometry/spatial/ring_tree.hpp"
 
 namespace apothem {
 namespace {
@@ -264,39 +265,19 @@ class Laws {
     return result;
   }
 
-  // Counts the edges that a ray to the right of each node crosses. The nodes are visited from the
-  // lowest to the highest one; `crossed` holds the edges at the height of the present one.
+  // Counts the edges that a ray to the right of each node crosses.
   void check_inside() {
     const std::vector<bool> near = near_their_edges();
-    std::vector<double> heights;
-    for (const Node& node : skeleton_.nodes) heights.push_back(node.point.y());
-    const std::vector<size_t> nodes = sorted(heights, heights.size());
-    std::vector<double> bottoms;
-    for (int e = 0; e < size_; ++e) {
-      bottoms.push_back(std::min(ring_[e].y(), ring_[polygon_.next(e)].y()));
+    std::vector<RingTree> rings;
+    for (int k = 0; k < polygon_.rings(); ++k) {
+      rings.emplace_back(
+          Ring(ring_.begin() + polygon_.ring_start(k), ring_.begin() + polygon_.ring_start(k + 1)));
     }
-    const std::vector<size_t> edges = sorted(bottoms, bottoms.size());
-    auto coming = edges.begin();
-    std::vector<std::pair<Vec2, Vec2>> crossed;
-    for (const size_t i : nodes) {
+    for (size_t i = 0; i < skeleton_.nodes.size(); ++i) {
       const Vec2& p = skeleton_.nodes[i].point;
-      for (; coming != edges.end() && bottoms[*coming] <= p.y(); ++coming) {
-        const int e = static_cast<int>(*coming);
-        crossed.emplace_back(ring_[e], ring_[polygon_.next(e)]);
-      }
-      bool inside = false;
-      for (size_t k = 0; k < crossed.size();) {
-        const Vec2 a = crossed[k].first - p;
-        const Vec2 b = crossed[k].second - p;
-        if (a.y() < 0 && b.y() < 0) {
-          crossed[k] = crossed.back();
-          crossed.pop_back();
-          continue;
-        }
-        if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) inside = !inside;
-        ++k;
-      }
-      if (!inside && !near[i] && !near_outline(p)) fail("a node is outside the polygon");
+      const auto crossed = std::count_if(rings.begin(), rings.end(),
+                                         [&](const RingTree& ring) { return ring.odd_crossings(p); });
+      if (crossed % 2 == 0 && !near[i] && !near_outline(p)) fail("a node is outside the polygon");
     }
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "geometry/skeleton/event_queue.hpp"
+#include "geometry/skeleton/front_triangle.hpp"
 #include "geometry/skeleton/moving_front.hpp"
 
 namespace apothem {
@@ -23,7 +24,6 @@ class Wavefront {
       : polygon_(polygon),
         size_(polygon.size()),
         count_(size_ - 2 + 2 * (polygon.rings() - 1)),
-        triangles_(count_),
         queue_(count_),
         borders_(size_) {
     const std::vector<Triangle> corners = triangulate(polygon);
@@ -35,7 +35,8 @@ class Wavefront {
     for (int v = 0; v < size_; ++v) {
       front_.add_vertex(points[v], 0, polygon.previous(v), v, v);
     }
-    connect(corners);
+    triangles_ = front_triangles(corners, polygon);
+    sound_ = !triangles_.empty();
     for (int t = 0; t < count_ && sound_; ++t) {
       const auto [a, b, c] = triangles_[t].corners;
       if (!(twice_area(points[a], points[b], points[c]) > 0)) sound_ = false;
@@ -63,38 +64,6 @@ class Wavefront {
   }
 
  private:
-  // Finds the neighbours of the triangles.
-  void connect(const std::vector<Triangle>& corners) {
-    sound_ = static_cast<int>(corners.size()) == count_;
-    if (!sound_) return;
-    struct Side {
-      int low, high, triangle, place;
-    };
-    std::vector<Side> sides;
-    for (int t = 0; t < static_cast<int>(corners.size()); ++t) {
-      triangles_[t].corners = corners[t];
-      for (int k = 0; k < 3; ++k) {
-        const int a = corners[t][(k + 1) % 3];
-        const int b = corners[t][(k + 2) % 3];
-        if (polygon_.next(a) == b) {
-          triangles_[t].sides[k] = ~a;
-        } else {
-          sides.push_back({std::min(a, b), std::max(a, b), t, k});
-        }
-      }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-      return std::pair(p.low, p.high) < std::pair(q.low, q.high);
-    });
-    sound_ = sides.size() % 2 == 0;
-    for (size_t i = 0; sound_ && i < sides.size(); i += 2) {
-      const Side &p = sides[i], &q = sides[i + 1];
-      sound_ = p.low == q.low && p.high == q.high;
-      triangles_[p.triangle].sides[p.place] = q.triangle;
-      triangles_[q.triangle].sides[q.place] = p.triangle;
-    }
-  }
-
   void schedule(int triangle, const Real& now) {
     const MovingFront::Time time = front_.collapse_time(triangles_[triangle], now);
     ++changes_;
@@ -155,29 +124,14 @@ class Wavefront {
     }
   }
 
-  // Corner k crosses the opposite side: the diagonal of the quadrilateral of the two triangles
-  // beside the side is exchanged.
+  // Corner k crosses the opposite side.
   void flip(int triangle, int k) {
-    FrontTriangle& t = triangles_[triangle];
-    const int other = t.sides[k];
+    const int other = triangles_[triangle].sides[k];
     if (other < 0) {
       sound_ = false;
       return;
     }
-    FrontTriangle& n = triangles_[other];
-    const int m = n.side_to(triangle);
-    const int w = t.corners[k];
-    const int u = t.corners[(k + 1) % 3];
-    const int v = t.corners[(k + 2) % 3];
-    const int d = n.corners[m];
-    const int beside_u = t.sides[(k + 2) % 3];  // side w u
-    const int beside_v = t.sides[(k + 1) % 3];  // side v w
-    const int n_u = n.sides[n.place_of(v)];     // side u d
-    const int n_v = n.sides[n.place_of(u)];     // side d v
-    t = {{w, u, d}, {n_u, other, beside_u}};
-    n = {{w, d, v}, {n_v, beside_v, triangle}};
-    if (n_u >= 0) triangles_[n_u].sides[triangles_[n_u].side_to(other)] = triangle;
-    if (beside_v >= 0) triangles_[beside_v].sides[triangles_[beside_v].side_to(triangle)] = other;
+    exchange_diagonal(triangles_, triangle, k);
     schedule(triangle, now_);
     schedule(other, now_);
   }
@@ -275,7 +229,7 @@ class Wavefront {
   double changes_ = 0;
   MovingFront front_;
   std::vector<FrontTriangle> triangles_;
-  EventQueue queue_;          // of triangles
+  EventQueue<Real> queue_;    // of triangles
   std::vector<int> changed_;  // triangles that have to be scheduled anew
   std::vector<Skeleton::Node> nodes_;
   std::vector<std::vector<FaceBorder>> borders_;  // per face

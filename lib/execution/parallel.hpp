@@ -1,11 +1,12 @@
 // Loops on several threads.
 //
-// Items are divided into contiguous chunks, one for each thread, and every item is worked on by one
-// thread alone. What is summed over items is summed afterwards, in their order. So the result has
-// the same bits for any number of threads.
+// Items are divided into contiguous chunks, one for each thread, or taken one by one, and every
+// item is worked on by one thread alone. What is summed over items is summed afterwards, in their
+// order. So the result has the same bits for any number of threads.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <type_traits>
 
@@ -46,6 +47,16 @@ class Threads {
           (*function)(threads->first_of(all, worker), threads->first_of(all, worker + 1), worker);
         },
         &task);
+  }
+
+  /// f(item) for each of the items, which may cost very different times: whoever is free takes the
+  /// next one. See worth(). What f throws is thrown in the end, when others are done, too.
+  template <class F>
+  void each(int items, double cost, F&& f) const {
+    std::atomic<int> taken{0};
+    chunks(items, cost, [&](int, int, int) {
+      for (int item = taken++; item < items; item = taken++) f(item);
+    });
   }
 
  private:

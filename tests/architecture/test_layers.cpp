@@ -62,9 +62,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 const std::map<std::string, std::set<std::string>> kGeometryMayInclude{
     {"polygon", {}},
     {"spatial", {"polygon"}},
-    {"skeleton", {"polygon"}},
+    {"skeleton", {"polygon", "spatial"}},
     {"potential", {"polygon", "spatial", "skeleton"}},
-    {"integrals", {"polygon", "skeleton", "potential"}},
+    {"integrals", {"polygon", "spatial", "skeleton", "potential"}},
     {"exact", {"polygon", "skeleton", "potential", "integrals"}},
     {"meshing", {"polygon", "spatial"}},
     {"packing", {"polygon", "spatial", "skeleton", "meshing"}},

@@ -250,3 +250,34 @@ TEST_CASE("forces where features of lattice shapes coincide", "[distance-volume]
     CHECK(std::abs(r.volume.energy - exact.volume.energy) <= 1e-12);
   });
 }
+
+// With few vertices all features are tried for every cell, with many only those near it.
+TEST_CASE("the integral of a distance field is the same with vertices within the edges",
+          "[distance-volume]") {
+  test::SeededRandom random(71);
+  constexpr int kParts = 16;
+  const auto whole = [](const Polygon& polygon) {  // so that edges can be divided exactly
+    return samples::mapped(polygon, [](const Vec2& v) {
+      return Vec2(std::round(4096 * v.x()) / 4096, std::round(4096 * v.y()) / 4096);
+    });
+  };
+  for (int i = 0; i < test::scaled(100); ++i) {
+    const int n = random.integer(5, 30);
+    const Polygon owner = whole(samples::random_star_shaped(random, n, random.uniform(.1, 1)));
+    std::vector<Vec2> ring;
+    for (int e = 0; e < owner.size(); ++e) {
+      const Vec2 step = (owner.after(e) - owner[e]) / kParts;
+      for (int k = 0; k < kParts; ++k) ring.emplace_back(owner[e] + k * step);
+    }
+    const Polygon divided(ring);
+    const Vec2 shift(random.uniform(-1.5, 1.5), random.uniform(-.5, .5));
+    const Polygon other = samples::shifted(
+        whole(samples::random_star_shaped(random, random.integer(3, 20), .4)), shift);
+    for (const double length : {.1, 10.}) {
+      const double expected = volume(owner, other, length, Vec2::Zero());
+      INFO("polygon " << i);
+      CHECK(volume(divided, other, length, Vec2::Zero()) ==
+            Approx(expected).epsilon(1e-11).margin(1e-13));
+    }
+  }
+}

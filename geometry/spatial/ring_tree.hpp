@@ -1,0 +1,88 @@
+// Searches along a closed line, for many points.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// The boxes around runs of edges of a ring, which halve each other. Edge i begins in point i.
+class RingTree {
+ public:
+  explicit RingTree(std::vector<Vec2> ring) : ring_(std::move(ring)) {
+    if (!ring_.empty()) enclose(0, 0, ring_.size());
+  }
+
+  /// Number of edges.
+  [[nodiscard]] int size() const { return static_cast<int>(ring_.size()); }
+
+  /// True if the ray from p to the right crosses the ring an odd number of times: p is inside, if
+  /// it does not lie on the ring. An end of an edge at the height of p counts as below it. A run
+  /// beside p counts by its two ends alone, so that this takes about log n steps.
+  [[nodiscard]] bool odd_crossings(const Vec2& p) const {
+    return !ring_.empty() && odd_crossings(p, 0, 0, ring_.size());
+  }
+
+  /// Calls f(edge) for edges in ascending order. It leaves out only runs of them around which
+  /// there is a box for which meets(box) is false.
+  template <class Meets, class F>
+  void each(const Meets& meets, const F& f) const {
+    if (!ring_.empty()) each(meets, f, 0, 0, ring_.size());
+  }
+
+ private:
+  static constexpr size_t kRun = 8;  // edges that have no boxes of their own
+
+  // The run `i` of the edges from `first` to `end` - 1 has the halves 2 i + 1 and 2 i + 2.
+  const Box& enclose(size_t i, size_t first, size_t end) {
+    if (boxes_.size() <= i) boxes_.resize(i + 1);
+    Box box;
+    if (end - first <= kRun) {
+      for (size_t e = first; e < end; ++e) box.include(ring_[e]), box.include(after(ring_, e));
+    } else {
+      const size_t middle = (first + end) / 2;
+      box.include(enclose(2 * i + 1, first, middle));
+      box.include(enclose(2 * i + 2, middle, end));
+    }
+    return boxes_[i] = box;
+  }
+
+  [[nodiscard]] bool odd_crossings(const Vec2& p, size_t i, size_t first, size_t end) const {
+    const Box& box = boxes_[i];
+    if (box.x1 < p.x() || box.y1 <= p.y() || box.y0 > p.y()) return false;
+    if (box.x0 > p.x()) {
+      return (ring_[first].y() > p.y()) != (ring_[end % ring_.size()].y() > p.y());
+    }
+    if (end - first > kRun) {
+      const size_t middle = (first + end) / 2;
+      return odd_crossings(p, 2 * i + 1, first, middle) != odd_crossings(p, 2 * i + 2, middle, end);
+    }
+    bool odd = false;
+    for (size_t e = first; e < end; ++e) {
+      const Vec2 a = ring_[e] - p, b = after(ring_, e) - p;
+      if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) odd = !odd;
+    }
+    return odd;
+  }
+
+  template <class Meets, class F>
+  void each(const Meets& meets, const F& f, size_t i, size_t first, size_t end) const {
+    if (!meets(boxes_[i])) return;
+    if (end - first > kRun) {
+      const size_t middle = (first + end) / 2;
+      each(meets, f, 2 * i + 1, first, middle);
+      each(meets, f, 2 * i + 2, middle, end);
+      return;
+    }
+    for (size_t e = first; e < end; ++e) f(static_cast<int>(e));
+  }
+
+  std::vector<Vec2> ring_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,37 @@
+// What is near a segment, for trees of boxes.
+#pragma once
+
+#include <cmath>
+
+#include "geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// The points within a distance of the segment from a to b, and a few more behind its ends.
+class Strip {
+ public:
+  Strip(const Vec2& a, const Vec2& b, double distance)
+      : around_(box_of(a, b).grown(distance)), start_(a), distance_(distance) {
+    const Vec2 side = b - a;
+    const double length = side.norm();
+    if (length > 0) normal_ = {-side.y() / length, side.x() / length};
+  }
+
+  /// False only if none of the points is in the box.
+  [[nodiscard]] bool meets(const Box& box) const {
+    if (apart(box, around_)) return false;
+    const Vec2 half((box.x1 - box.x0) / 2, (box.y1 - box.y0) / 2);
+    const Vec2 centre = Vec2(box.x0, box.y0) + half - start_;
+    // More than the round-off of the normal and of what it is multiplied with.
+    const double slack = 1e-15 * (half.norm() + centre.norm());
+    return std::abs(normal_.dot(centre)) <= normal_.cwiseAbs().dot(half) + distance_ + slack;
+  }
+
+ private:
+  Box around_;
+  Vec2 start_;
+  Vec2 normal_ = Vec2::Zero();
+  double distance_;
+};
+
+}  // namespace apothem

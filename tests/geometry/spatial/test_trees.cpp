@@ -1,0 +1,78 @@
+// The trees of boxes find what the plain search finds.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "geometry/polygon/segment.hpp"
+#include "geometry/spatial/point_tree.hpp"
+#include "geometry/spatial/ring_tree.hpp"
+#include "tests/support.hpp"
+
+using namespace apothem;
+
+namespace {
+
+// Some of them on a lattice, so that many have equal coordinates.
+std::vector<Vec2> random_points(test::SeededRandom& random, int n) {
+  const bool lattice = random.integer(0, 1) == 1;
+  std::vector<Vec2> points;
+  for (int i = 0; i < n; ++i) {
+    const Vec2 p(random.uniform(0, 5), random.uniform(0, 5));
+    points.push_back(lattice ? Vec2(std::round(p.x()), std::round(p.y())) : p);
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("the tree of points finds all points near a segment", "[boxes]") {
+  test::SeededRandom random(91);
+  for (int round = 0; round < test::scaled(500); ++round) {
+    const std::vector<Vec2> points = random_points(random, random.integer(0, 200));
+    const PointTree tree(points);
+    const std::vector<Vec2> ends = random_points(random, 2);
+    const Vec2 &a = ends[0], &b = ends[round % 5 == 0 ? 0 : 1];
+    const double distance = random.integer(0, 2) * random.uniform(0, .5);
+    const auto is_near = [&](int i) {
+      return nearest_on_segment(points[i] - a, b - a).distance2 <= distance * distance;
+    };
+    std::set<int> expected, found;
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+      if (is_near(i)) expected.insert(i);
+    }
+    const bool any = tree.any_near(a, b, distance, [&](int i) {
+      if (is_near(i)) found.insert(i);
+      return false;
+    });
+    REQUIRE_FALSE(any);
+    REQUIRE(found == expected);
+    REQUIRE(tree.any_near(a, b, distance, is_near) == !expected.empty());
+  }
+}
+
+TEST_CASE("the tree of a ring finds edges near a point, and counts those that a ray crosses",
+          "[boxes]") {
+  test::SeededRandom random(92);
+  for (int round = 0; round < test::scaled(500); ++round) {
+    const std::vector<Vec2> ring = random_points(random, random.integer(0, 200));
+    const RingTree tree(ring);
+    for (const Vec2& p : random_points(random, 20)) {
+      const double distance = random.integer(0, 2) * random.uniform(0, .5);
+      std::vector<int> expected, found;
+      bool odd = false;
+      for (int e = 0; e < static_cast<int>(ring.size()); ++e) {
+        const Vec2 a = ring[e] - p, b = after(ring, e) - p;
+        if (nearest_on_segment(-a, b - a).distance2 <= distance * distance) expected.push_back(e);
+        if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) odd = !odd;
+      }
+      const Box around = box_of(p, p).grown(distance);
+      tree.each([&](const Box& box) { return !apart(box, around); },
+                [&](int e) {
+                  const Vec2 a = ring[e] - p, b = after(ring, e) - p;
+                  const double off2 = nearest_on_segment(-a, b - a).distance2;
+                  if (off2 <= distance * distance) found.push_back(e);
+                });
+      REQUIRE(found == expected);
+      REQUIRE(tree.odd_crossings(p) == odd);
+    }
+  }
+}
