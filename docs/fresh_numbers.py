@@ -178,11 +178,19 @@ class Fresh:
         rows = self.read(self.run(name)[0] / "pairs.csv")
         return sum(row[2] == method and row[3].startswith("crashed") for row in rows)
 
+    def results(self, command):
+        """What the benchmark prints with --json."""
+        text = self.run(command)[1]
+        return json.loads(text[text.index("{\n"):text.rindex("}") + 1])
+
+    def grows(self, family, command):
+        """The power of the size with which the time of a family of the benchmark grows."""
+        [power] = [g["exponent"] for g in self.results(command)["growth"] if g["family"] == family]
+        return Time(power, power, 0)
+
     def bench(self, name, of="time", command="benchmark"):
         """Of a case of the benchmark: least and largest time of an item in ns or rate in 1/s, or an extra number."""
-        text = self.run(command)[1]
-        start = text.index("{\n")
-        cases = [c for c in json.loads(text[start:text.rindex("}") + 1])["cases"] if c["name"] == name]
+        cases = [c for c in self.results(command)["cases"] if c["name"] == name]
         if not cases and self.options.quick:
             raise NotRun("not in the quick subset")
         if not cases:
@@ -282,7 +290,7 @@ class Fresh:
 
     def evaluate(self, expression, **more):
         names = {f: getattr(self, f) for f in
-                 ("out", "listed", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen",
+                 ("out", "listed", "csv", "column", "total", "crashes", "bench", "grows", "expect", "summary", "history", "seen",
                   "times_seen")}
         names.update(timed=lambda time: Time(time, time, 1), mean=lambda values: sum(values) / len(values), ratio=ratio,
                      scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,

@@ -97,6 +97,25 @@ Polygon comb(int teeth, double length, double growth) {
   return Polygon(ring);
 }
 
+Polygon gear(int teeth) {
+  const double pitch = 2 * M_PI / teeth, root = 1 - .6 * std::min(pitch, 1.);
+  std::vector<Vec2> ring;
+  for (int i = 0; i < teeth; ++i) {
+    ring.push_back(polar(root, pitch * (i - .25)));
+    ring.push_back(polar(1, pitch * (i - .12)));
+    ring.push_back(polar(1, pitch * (i + .12)));
+    ring.push_back(polar(root, pitch * (i + .25)));
+  }
+  return Polygon(ring);
+}
+
+Polygon staircase(int steps) {
+  std::vector<Vec2> ring;
+  for (double i = 0; i < steps; ++i) ring.insert(ring.end(), {{i, i - 3}, {i + 1, i - 3}});
+  for (double i = steps; i > 0; --i) ring.insert(ring.end(), {{i, i + 2}, {i - 1, i + 2}});
+  return Polygon(ring);
+}
+
 Polygon spiral(double turns, int edges_per_turn, double width, double widening) {
   std::vector<Vec2> ring, inner;
   const int n = static_cast<int>(std::lround(turns * edges_per_turn));

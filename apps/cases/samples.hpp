@@ -41,6 +41,11 @@ Polygon star(int tips, double inner);
 /// x. The first tooth is `length` long, and each further one is longer than its left neighbour by
 /// `growth`.
 Polygon comb(int teeth, double length = 2, double growth = 0);
+/// Teeth with sloping sides around a circle, whose tips have the radius 1. There are 4 vertices for
+/// each.
+Polygon gear(int teeth);
+/// Band along a diagonal whose two borders are steps of width and height 1.
+Polygon staircase(int steps);
 /// Band along an Archimedean spiral about the origin, with pitch 1. Its width grows by `widening`
 /// with each turn.
 Polygon spiral(double turns, int edges_per_turn, double width = .4, double widening = 0);

@@ -138,6 +138,19 @@ class DistanceVolume {
     }
   }
 
+  // Calls f for all elements of an ascending list, which is closed to a ring, beginning at a
+  // number: what is near it along the outline is often near it in the plane, and leaves little
+  // above the ceiling for what follows.
+  template <class F>
+  static void outwards(const std::vector<int>& list, int number, const F& f) {
+    const size_t count = list.size();
+    const auto start =
+        static_cast<size_t>(std::lower_bound(list.begin(), list.end(), number) - list.begin());
+    for (size_t k = 0; k < count; ++k) {
+      f(list[(start + (k % 2 == 0 ? k / 2 : count - (k + 1) / 2)) % count]);
+    }
+  }
+
   // Lowers highest_ to the largest distance of the ceiling.
   template <class Height>
   void lower_highest(const Height& height) {
@@ -170,21 +183,21 @@ class DistanceVolume {
     };
     const auto fill = [&] {
       ceiling_.reset(0, length);
-      for (const int j : near_edges_) {
+      outwards(near_edges_, i, [&](int j) {
         typename DistanceOutline<Real>::Bisector line;
-        if (j == i || !outline_.bisector(i, j, line)) continue;
+        if (j == i || !outline_.bisector(i, j, line)) return;
         const Quadratic f{line.origin, {line.start, line.rise, 0}, j};
         add_border(f, line.from, line.to, std::min(f(line.from), f(line.to)), height);
-      }
-      for (const int v : near_reflex_) {
-        if (v == i || v == outline_.after(i)) continue;
+      });
+      outwards(near_reflex_, i, [&](int v) {
+        if (v == i || v == outline_.after(i)) return;
         const Real h = outline_.height(i, v);
         const Real curvature = 1 / (2 * h);
         if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
           const Real tau = dot(t, outline_.vertex(v) - start);
           add_border({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, length, h / 2, height);
         }
-      }
+      });
     };
     raise_ceiling(start, stop, length, fill, height);
     Sums sums;
@@ -253,18 +266,18 @@ class DistanceVolume {
     const auto fill = [&] {
       ceiling_.reset(t0, t1);
       reaches_.clear();
-      for (const int j : near_edges_) {
+      outwards(near_edges_, v, [&](int j) {
         if (j != v && j != before) reach_to_edge(v, j, t0, t1);
-      }
-      for (const int w : near_reflex_) {
-        if (w == v) continue;
+      });
+      outwards(near_reflex_, v, [&](int w) {
+        if (w == v) return;
         // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit
         // direction.
         const Point p = in_frame(outline_.vertex(w) - corner);
         const Real d2 = dot(p, p) / 2;
         reaches_.push_back({false, p, d2, 0, 0});
         insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1, sqrt(d2 / 2));
-      }
+      });
     };
     raise_ceiling(corner, corner, outline_.length(v), fill, [&](size_t k) { return reach(k); });
     Sums sums;

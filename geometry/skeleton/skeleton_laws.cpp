@@ -275,8 +275,8 @@ class Laws {
     }
     for (size_t i = 0; i < skeleton_.nodes.size(); ++i) {
       const Vec2& p = skeleton_.nodes[i].point;
-      const auto crossed = std::count_if(rings.begin(), rings.end(),
-                                         [&](const RingTree& ring) { return ring.odd_crossings(p); });
+      const auto crossed = std::count_if(
+          rings.begin(), rings.end(), [&](const RingTree& ring) { return ring.odd_crossings(p); });
       if (crossed % 2 == 0 && !near[i] && !near_outline(p)) fail("a node is outside the polygon");
     }
   }
