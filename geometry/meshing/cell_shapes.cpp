@@ -187,6 +187,7 @@ class AngleOpener {
   // Distances of a node from its neighbours, m.
   [[nodiscard]] std::vector<double> lengths(int node, const std::set<int>& neighbours) const {
     std::vector<double> result;
+    result.reserve(neighbours.size());
     for (const int other : neighbours) {
       result.push_back((mesh_.points[other] - mesh_.points[node]).norm());
     }
