@@ -43,6 +43,7 @@ class Barriers {
 // angles, so that a circle that touches very many edges is no matter.
 std::vector<std::pair<int, int>> opposite_pairs(const std::vector<const PolygonEdge*>& edges) {
   std::vector<std::pair<double, int>> angles;  // in ascending order
+  angles.reserve(edges.size());
   for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
     angles.emplace_back(std::atan2(edges[i]->direction.y(), edges[i]->direction.x()), i);
   }
