@@ -62,4 +62,29 @@ struct Half : EdgeSums<double> {
   }
 };
 
+// The sums of a pair or of one of its patches, as in PairIntegral.
+template <class Real>
+struct PairSums {
+  Real fx, fy, moment_a, moment_b, weight, centre_x = 0, centre_y = 0;
+};
+
+// Combines the integrals along the edges of a and of b. (rx, ry) is a's reference point relative
+// to b's.
+template <class Real>
+APOTHEM_INLINE PairSums<Real> combine_sums(const EdgeSums<Real>& of_a, const EdgeSums<Real>& of_b,
+                                           const Real& rx, const Real& ry) {
+  // Each moment is about the reference point of the polygon that owns phi. The arm moves it to the
+  // reference point of the other polygon.
+  PairSums<Real> pair{.fx = of_b.fx - of_a.fx,
+                      .fy = of_b.fy - of_a.fy,
+                      .moment_a = of_b.moment - (of_a.moment - (rx * of_a.fy - ry * of_a.fx)),
+                      .moment_b = of_a.moment - (of_b.moment + (rx * of_b.fy - ry * of_b.fx)),
+                      .weight = of_a.weight + of_b.weight};
+  if (!(pair.weight == Real(0.))) {
+    pair.centre_x = (of_b.wx + (of_a.wx - rx * of_a.weight)) / pair.weight;
+    pair.centre_y = (of_b.wy + (of_a.wy - ry * of_a.weight)) / pair.weight;
+  }
+  return pair;
+}
+
 }  // namespace apothem::edge_detail

@@ -15,9 +15,9 @@ namespace apothem {
 
 class ContactTerm;
 
-/// Dynamic relaxation. Friction is followed from load step to load step: within one, it is a
-/// function of the displacements since its start, so that the path of the relaxation leaves no
-/// trace.
+/// Newton's method, and dynamic relaxation where that fails. Friction is followed from load step to
+/// load step: within one, it is a function of the displacements since its start, so that the path
+/// of the relaxation leaves no trace.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;
@@ -73,7 +73,7 @@ class Equilibrium {
   bool find_tangent(const State& state);
   bool find_step(State& state, const NewtonPath& path, bool first);
   void put_on_rails();
-  void go(State& state, const State& before, const NewtonPath& path);
+  bool go(State& state, const State& before, const NewtonPath& path);
   void begin_longer_step(const State& state, NewtonPath& path);
   bool begin_shorter_step(State& state, NewtonPath& path);
   double shifted_residual(const State& state, const NewtonPath& path);
@@ -146,11 +146,11 @@ class Equilibrium {
   std::vector<double> step_, moves_, shift_;  // of an iteration; of prescribed motion; added to K
   std::vector<std::uint8_t> free_;
   std::optional<NewtonPath> newton_pause_;
-  std::vector<double> lambda_;          // of rigid bodies: stiffness / inertia, 1/s^2
-  std::vector<double> radius_;          // of rigid bodies, m
-  std::vector<double> least_;           // scaled mass of rigid bodies
-  double far_ = 0;                      // m
-  double loads_ = 0;                    // largest norm in an equilibrium so far, N
+  std::vector<double> lambda_;  // of rigid bodies: stiffness / inertia, 1/s^2
+  std::vector<double> radius_;  // of rigid bodies, m
+  std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m
+  double far_ = 0;              // m
+  double loads_ = 0;            // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
   double loads_now_ = 0;                // the same with the state that is tried
   std::vector<double> body_loads_now_;  // likewise

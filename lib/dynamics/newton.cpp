@@ -113,8 +113,7 @@ bool Equilibrium::find_step(State& state, const NewtonPath& path, bool first) {
   return true;
 }
 
-// Says which coordinates the system has. A wall that holds a force has one, along its direction:
-// the x of its place.
+// Says which coordinates the system has. A body on a rail has one for its place: its x.
 void Equilibrium::put_on_rails() {
   for (size_t c = 0; c < free_.size(); ++c) free_[c] = !held(c);
   for (const auto& [body, along] : rails_) {
@@ -128,9 +127,10 @@ void Equilibrium::put_on_rails() {
 Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, double time,
                                              NewtonPath& path, const std::function<bool()>& stop,
                                              LoadStep& result) {
+  bool known = false;  // whether the forces are those of the present places
   for (;; ++path.iteration, ++path.all) {
     state.time = time;
-    find_forces(state, before);
+    if (!known) find_forces(state, before);
     if (path.iteration == 0) {
       path.polishing = false;
       path.base = state.x;
@@ -164,13 +164,15 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
     if (path.in_step == 0) path.at_start = now;
     path.residual = now;
     const int most = path.damped ? kMostInStep : kMostIterations;
-    if (path.in_step == most || path.all > most_iterations()) {
+    if (path.all > most_iterations()) return Verdict::failed;
+    if (path.in_step == most) {
       if (!path.damped || !begin_shorter_step(state, path)) return Verdict::failed;
+      known = false;
       continue;
     }
     if (!find_step(state, path, path.iteration == 0)) return Verdict::failed;
     ++path.in_step;
-    go(state, before, path);
+    known = go(state, before, path);
     if (stop && stop()) {
       ++path.iteration, ++path.all;
       return Verdict::stopped;
@@ -184,16 +186,18 @@ std::int64_t Equilibrium::most_iterations() const {
   return slides ? kMostOfSlides : kMostOfAll;
 }
 
-// Goes the step; where contacts may begin or end it is halved until the residual falls.
-void Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
+// Goes the step; where contacts may begin or end it is halved until the residual falls. Returns
+// whether the forces there are known.
+bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
   double share = path.damped ? shortened(step_) : 1;
   const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
-    if (!path.damped || path.polishing || path.iteration == 0 || halved == kMostHalvings) return;
+    if (!path.damped || path.polishing || path.iteration == 0) return false;
     find_forces(state, before);
-    if (shifted_residual(state, path) < growth * path.residual) return;
+    if (halved == kMostHalvings) return true;
+    if (shifted_residual(state, path) < growth * path.residual) return true;
   }
 }
 

@@ -460,42 +460,10 @@ CauchyStress FiniteElements::stress(std::span<const double> u, int set, int elem
   return result;
 }
 
-void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
-  constexpr double kProbe =
-      1e-6;  // times the shortest edge: a step in the linear range, far above round-off
-  const double step = kProbe * shortest_edge_;
-  std::ranges::fill(sums, 0.);
-  std::vector<Point<double>> moved, plus, minus;
-  each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
-                                     int element, const Point<double>* w) {
-    const ElementSet& set = sets_[index];
-    moved.assign(w, w + corners);
-    plus.resize(corners);
-    minus.resize(corners);
-    const Elastic& elastic = material(index, element).elastic;
-    with_law(elastic, [&]<class Law>(const Law& law) {
-      const Response<Law, false> response(law, elastic, 0, set.thickness);
-      const std::span<const int> nodes = set.mesh->element(element);
-      double power = 0;
-      for (int j = 0; j < 2 * corners; ++j) {
-        double& varied = j % 2 ? moved[j / 2].y : moved[j / 2].x;
-        const double middle = varied;
-        varied = middle + step;
-        Element::force(data, response, corners, moved.data(), moved.data(), plus.data(), power);
-        varied = middle - step;
-        Element::force(data, response, corners, moved.data(), moved.data(), minus.data(), power);
-        varied = middle;
-        for (int i = 0; i < corners; ++i) {
-          const size_t at = 2 * static_cast<size_t>(set.first_node + nodes[i]);
-          sums[at] += std::abs(plus[i].x - minus[i].x) / (2 * step);
-          sums[at + 1] += std::abs(plus[i].y - minus[i].y) / (2 * step);
-        }
-      }
-    });
-  });
-}
-
-void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const {
+// Calls f(row, column, stiffness) for all entries of the matrices of all elements; x of node 0 is
+// 0.
+template <class F>
+void FiniteElements::each_stiffness(std::span<const double> u, F&& f) const {
   constexpr int kAtOnce = 8;  // derivatives that are found in one pass over an element
   using Number = Dual<kAtOnce>;
   std::vector<Point<Number>> moved, force;
@@ -504,7 +472,7 @@ void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangen
     const ElementSet& set = sets_[index];
     const std::span<const int> nodes = set.mesh->element(element);
     const auto coordinate = [&](int i) {
-      return first + 2 * static_cast<size_t>(set.first_node + nodes[static_cast<size_t>(i / 2)]) +
+      return 2 * static_cast<size_t>(set.first_node + nodes[static_cast<size_t>(i / 2)]) +
              static_cast<size_t>(i % 2);
     };
     moved.resize(static_cast<size_t>(corners));
@@ -526,12 +494,22 @@ void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangen
           const Point<Number>& point = force[static_cast<size_t>(i / 2)];
           const Number& component = i % 2 ? point.y : point.x;
           for (int j = from; j < end; ++j) {
-            tangent.add(coordinate(i), coordinate(j), component.d.v[j - from]);
+            f(coordinate(i), coordinate(j), component.d.v[j - from]);
           }
         }
       }
     });
   });
+}
+
+void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
+  std::ranges::fill(sums, 0.);
+  each_stiffness(u, [&](size_t row, size_t, double k) { sums[row] += std::abs(k); });
+}
+
+void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const {
+  each_stiffness(
+      u, [&](size_t row, size_t column, double k) { tangent.add(first + row, first + column, k); });
 }
 
 FiniteElements::Collapse FiniteElements::smallest_ratio(std::span<const double> u) const {

@@ -85,7 +85,7 @@ class FiniteElements {
 
   /// Writes for each degree of freedom i an upper bound of the row sum SUM_j |K_ij|, N/m, of the
   /// tangent stiffness K at the displacements `u` (m): the sum of the row sums of the elements' own
-  /// matrices, which come from central differences of their forces. Damping does not count.
+  /// matrices. Damping does not count.
   void stiffness_sums(std::span<const double> u, std::span<double> sums) const;
 
   /// Adds the tangent stiffness K = d(internal forces)/du at the displacements `u` (m), N/m, in
@@ -163,6 +163,8 @@ class FiniteElements {
              F&& f) const;
   template <class F>
   void each_element(std::span<const double> u, F&& f) const;
+  template <class F>
+  void each_stiffness(std::span<const double> u, F&& f) const;
 
   std::vector<ElementSet> sets_;
   std::vector<Behaviour> behaviours_;
