@@ -1,5 +1,6 @@
-// One impact, said in several ways: on a rigid floor and on a floor of stiff elements, with
-// friction and damping, a rigid body leaves with the same velocity.
+// One situation, said in several ways: a rigid body on a rigid floor and on one of stiff elements
+// leaves with the same velocity after an impact; a block that is pressed and dragged feels the
+// same, rigid or of elements.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -170,4 +171,76 @@ TEST_CASE("impacts of random polygons leave floors of both kinds alike",
   }
   INFO(alike << " of " << cases << ", worst " << worst);
   CHECK(alike >= cases * 8 / 10);
+}
+
+namespace {
+
+// A block on a rigid floor, pressed and then dragged by a rigid plate in so many load steps.
+struct Dragged {
+  double across = 0, along = 0;  // force on the plate, N
+  double sunk = 0;               // of the block's middle, m
+  bool relaxed = false;          // whether a load step was found by relaxation
+};
+Dragged dragged(const std::string& block, double friction, double way, int load_steps) {
+  const Folder folder;
+  const Scene scene = scene_of(
+      folder,
+      fmt::format(
+          R"({{ "gravity": [0, -9.81], "materials": {{ "m": {{ "density": 2000, "young": 1e13, "poisson": 0.2 }} }},
+      "contact": {{ "normal_stiffness": 1e9, "reference": 0.25, "penetration_warning": 10, "friction": {{ "coefficient": {} }} }},
+      "bodies": [ {{ "name": "floor", "material": "m", "motion": "fixed", "polygon": [[-2, -0.5], [2, -0.5], [2, 0], [-2, 0]] }},
+                  {{ "name": "plate", "material": "m", "polygon": [[-1, 0.5], [1, 0.5], [1, 0.8], [-1, 0.8]],
+                     "motion": {{ "velocity": [[0, 0, -2e-4], [1, 0, -2e-4], [1.0001, {}, 0]] }} }},
+                  {{ "name": "block", "material": "m", {} }} ],
+      "time": {{ "mode": "static", "end": 2, "load_steps": {}, "tolerance": 1e-9 }} }})",
+          friction, way, block, load_steps));
+  Run run(scene, {});
+  while (run.step()) {
+  }
+  Dragged result;
+  const RigidIndex plate = 1;
+  result.along = run.state().force(plate)[0], result.across = run.state().force(plate)[1];
+  for (const LoadStep& step : run.load_steps()) result.relaxed = result.relaxed || step.relaxed;
+  if (scene.model.deformables.empty()) {
+    result.sunk = run.state().pose(2)[1] - .25;
+    return result;
+  }
+  // The block tilts; its grid is regular, so that the mean of its nodes is its middle.
+  const auto nodes = static_cast<NodeIndex>(scene.model.deformables[0].mesh.nodes.size());
+  for (NodeIndex n = 0; n < nodes; ++n) result.sunk += run.state().node(n).y() / nodes;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a block that is pressed and dragged feels the same, rigid or of stiff elements, in few "
+    "load steps or many",
+    "[friction][static]") {
+  const std::string rigid = R"("polygon": [[-0.5, 0], [0.5, 0], [0.5, 0.5], [-0.5, 0.5]])";
+  const std::string meshed =
+      R"("mesh": { "rectangle": { "size": [1, 0.5], "cells": [8, 4], "origin": [-0.5, 0] } })";
+  for (const double friction : {.3, .6}) {
+    for (const double way : {2e-5, 2e-3}) {  // m: it sticks; it slides
+      CAPTURE(friction, way);
+      const Dragged reference = dragged(rigid, friction, way, 2);
+      CHECK(reference.across > 7e5);
+      CHECK(reference.along < 0);
+      if (way > 1e-3) {
+        CHECK(reference.along == Approx(-friction * reference.across).epsilon(1e-4));
+      } else {
+        CHECK(-reference.along < .9 * friction * reference.across);
+      }
+      for (const std::string& block : {rigid, meshed}) {
+        for (const int steps : {2, 8}) {
+          const Dragged found = dragged(block, friction, way, steps);
+          CAPTURE(block, steps);
+          CHECK_FALSE(found.relaxed);
+          CHECK(found.across == Approx(reference.across).epsilon(block == rigid ? 1e-6 : 1e-3));
+          CHECK(found.along == Approx(reference.along).epsilon(block == rigid ? 1e-6 : 1e-3));
+          CHECK(found.sunk == Approx(reference.sunk).epsilon(1e-3));
+        }
+      }
+    }
+  }
 }
