@@ -24,7 +24,7 @@ struct MovingIntegral {
   Moving own_length_a, own_length_b, breadth;
 };
 
-/// Memory of pair_derivative. Keep one per thread.
+/// Finds them, with memory that grows to what pairs need. Keep one per thread.
 class PairDerivative {
  public:
   /// The integrals of each patch of a pair. `patch_of` tells the patches of the segments, in the

@@ -224,7 +224,6 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   if (contact_) contact_->forget_search();
   find_forces(state, before);
   find_masses(state);
-  if (!find_tangent(state)) return Verdict::failed;
   NewtonPath path;
   path.until = time;
   path.damped = contact_ != nullptr;

@@ -2,6 +2,8 @@
 // 14).
 #pragma once
 
+#include <cmath>
+
 #include "lib/execution/pack.hpp"
 
 namespace apothem {
@@ -32,6 +34,13 @@ struct CoulombSpring {
     return within(trial(force, slip));
   }
 };
+
+/// Whether a spring slides, up to round-off of its limit: its force is then a function of the
+/// normal force, and not of the slip.
+inline bool is_sliding(double force, double limit) {
+  constexpr double kAtLimit = 1 - 1e-12;
+  return std::abs(force) >= kAtLimit * limit;
+}
 
 /// The energy of a spring, J, from its force (N) and stiffness (N/m); 0 if the stiffness is 0.
 template <class Real>

@@ -388,7 +388,6 @@ void OutlineFriction::each_coordinate(const EdgeFaceBlocks& blocks, const EdgeFa
 
 void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
                                   Tangent& tangent) const {
-  constexpr double kAtLimit = 1e-12;
   CoordinateSum along;
   for (const EdgeFaceUnit& unit : blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
@@ -397,7 +396,7 @@ void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_nod
       const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
       if (!law.rough() || !(contact.normal > 0)) continue;
       const double limit = friction_limit(law.friction.coefficient, contact.pressed);
-      if (!(std::abs(contact.friction) < (1 - kAtLimit) * limit)) continue;
+      if (is_sliding(contact.friction, limit)) continue;
       along.clear();
       each_coordinate(blocks, unit, groups[g], contact,
                       [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {

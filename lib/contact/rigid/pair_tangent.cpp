@@ -1,15 +1,11 @@
 #include "lib/contact/rigid/pair_tangent.hpp"
 
 #include <array>
-#include <cmath>
 
 #include "lib/contact/law/patch_laws.hpp"
 
 namespace apothem {
 namespace {
-
-// A spring whose force is this near to Coulomb's limit slides.
-constexpr double kAtLimit = 1e-12;
 
 PatchStep<Moving> step_of(const Surfaces& surfaces, double thickness, const PairLaw& law,
                           RigidIndex a, RigidIndex b, const MovingIntegral& patch) {
@@ -53,7 +49,7 @@ void set_memory(const TriedFriction& friction, PatchStep<Moving>& p) {
   const double slip = p.slip(p.rate).dot(p.normal.turned()).v;
   const double limit = friction_limit(p.coefficient.v, (p.normal_stiffness * p.size).v);
   double force = friction.now.force + k * slip * closed_fraction(p, dt).v * dt;
-  if (std::abs(friction.now.force) >= (1 - kAtLimit) * limit) force += friction.now.force;
+  if (is_sliding(friction.now.force, limit)) force += friction.now.force;
   p.spring = force;
   p.stiffness_before = k;
   p.friction_before = p.force_at_point(p.spring * p.normal.turned());

@@ -207,6 +207,7 @@ bool PolygonKernel::add_tangent(size_t /*first_node*/, Tangent& tangent) const {
     const Vec2 between = surfaces_.between(pair.a, pair.b);
     std::span<const MovingIntegral> patches =
         derivative.find(view_a, view_b, between, pairs_.segments(pair));
+    // Where round-off finds other segments, the whole pair has the friction of its first patch.
     if (patches.empty()) patches = derivative.find(view_a, view_b, between, {});
     for (size_t i = 0; i < patches.size(); ++i) {
       TriedFriction friction;
