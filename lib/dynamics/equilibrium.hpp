@@ -37,6 +37,19 @@ class Equilibrium {
   /// The same by Newton's method alone. Returns false, with the state as it was, if that finds
   /// none.
   bool settle_by_newton(State& state, const std::function<bool()>& stop);
+  /// A step of h (s) in time, from `before` to state.time: finds the places x with
+  /// M (x - base) / h^2 = f(x), from those of `state` on; `base` are the places that forces do not
+  /// reach. Driven coordinates stay where they are in `state`. Afterwards contacts remember the
+  /// friction of these places as a trial. Returns false if it finds none.
+  bool step(State& state, const State& before, const std::vector<double>& base, double h);
+  /// Out of balance where the forces were found last, N and N m: of what is free, with its weight.
+  [[nodiscard]] const std::vector<double>& forces() const { return rest_; }
+  /// Of Newton's method in all steps so far.
+  [[nodiscard]] std::int64_t iterations() const { return iterations_; }
+  /// The shortest length of a body that tells how exactly a coordinate is known: a rigid body's
+  /// inradius (as an angle, over its radius), for nodes the shortest edge of the elements; m or
+  /// rad.
+  [[nodiscard]] double length(size_t coordinate) const;
   /// The loads of the last evaluation have been there before the first load step.
   void begin_loaded() { outside_ = loads(); }
 
@@ -82,6 +95,8 @@ class Equilibrium {
   [[nodiscard]] double first_shift() const;
   [[nodiscard]] std::int64_t most_iterations() const;
   int negative_pivots(const State& state);
+  [[nodiscard]] bool is_round_off(const State& state, const std::vector<double>& step) const;
+  [[nodiscard]] double size_of_forces() const;
   void keep(bool complete, LoadStep& result);
   LoadStep solve(State& state, const State& before, double time, const std::function<bool()>& stop);
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
@@ -146,6 +161,7 @@ class Equilibrium {
   std::vector<double> step_, moves_, shift_;  // of an iteration; of prescribed motion; added to K
   std::vector<std::uint8_t> free_;
   std::optional<NewtonPath> newton_pause_;
+  std::int64_t iterations_ = 0;
   std::vector<double> lambda_;  // of rigid bodies: stiffness / inertia, 1/s^2
   std::vector<double> radius_;  // of rigid bodies, m
   std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m

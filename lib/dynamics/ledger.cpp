@@ -4,15 +4,15 @@ namespace apothem {
 namespace {
 
 double total(const Energies& e) {
-  return e.kinetic + e.strain + e.contact + e.gravity + e.friction_loss + e.damping_loss -
-         e.external_work;
+  return e.kinetic + e.strain + e.contact + e.gravity + e.friction_loss + e.damping_loss +
+         e.numerical_loss - e.external_work;
 }
 
 }  // namespace
 
 void Ledger::start(const State& state, const Energies& terms) {
   outer_ = {};
-  work_ = initial_energy_ = 0;
+  work_ = numerical_loss_ = initial_energy_ = 0;
   refresh(state);
   initial_energy_ = close(state, terms).total_error;
   initial_ = dofs_.momentum(state);
@@ -46,10 +46,22 @@ void Ledger::book_after_drift(const State& state, double dt) {
   book(state, dt / 2);
 }
 
+// The velocities that are reported are those of the end of the step: v1 - v0 = -h/2 a0 + 3h/2 a1.
+void Ledger::book_implicit(const State& before, const State& after, double h) {
+  const Impulse weight = weight_;
+  dofs_.add_reactions(before, -h / 2, outer_);
+  refresh(after);
+  dofs_.add_reactions(after, 3 * h / 2, outer_);
+  outer_.add({h / 2 * (3 * weight_.x - weight.x), h / 2 * (3 * weight_.y - weight.y),
+              h / 2 * (weight.angular + weight_.angular)});
+  for (const DegreesOfFreedom::Driven& d : dofs_.driven()) work_ -= after.f[d.coordinate] * d.move;
+}
+
 Energies Ledger::close(const State& state, const Energies& terms) const {
   Energies e = terms;
   e.kinetic = dofs_.kinetic(state);
   e.gravity = dofs_.gravity_energy(state);
+  e.numerical_loss = numerical_loss_;
   e.external_work += work_;
   e.total_error = total(e) - initial_energy_;
   return e;

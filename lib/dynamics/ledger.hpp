@@ -17,6 +17,11 @@ class Ledger {
   /// with the forces in `state`: of the half of a step before the drift, and of the half after it.
   void book_before_drift(const State& state, double dt);
   void book_after_drift(const State& state, double dt);
+  /// The same for an implicit step of h (s), whose forces at its end have acted all along
+  /// (implicit.hpp).
+  void book_implicit(const State& before, const State& after, double h);
+  /// Energy that long steps have taken from vibrations, J.
+  void add_numerical_loss(double loss) { numerical_loss_ += loss; }
   /// An impulse, or work, from outside that no reaction tells of.
   void add_impulse(const Impulse& impulse) { outer_.add(impulse); }
   void add_work(double work) { work_ += work; }
@@ -27,7 +32,7 @@ class Ledger {
 
   void fields(Archive& archive) {
     archive("initial_energy", initial_energy_)("initial_momentum", initial_)("impulse", outer_)(
-        "external_work", work_);
+        "external_work", work_)("numerical_loss", numerical_loss_);
   }
   /// After `fields` has been loaded.
   void refresh(const State& state) { weight_ = dofs_.weight_sum(state); }
@@ -37,10 +42,11 @@ class Ledger {
 
   const DegreesOfFreedom& dofs_;
   double initial_energy_ = 0;
-  Impulse initial_;  // momentum at the start
-  Impulse outer_;    // impulses from outside since then
-  double work_ = 0;  // of loads and prescribed motion, J
-  Impulse weight_;   // of gravity where the bodies are, N and N m
+  Impulse initial_;            // momentum at the start
+  Impulse outer_;              // impulses from outside since then
+  double work_ = 0;            // of loads and prescribed motion, J
+  double numerical_loss_ = 0;  // J
+  Impulse weight_;             // of gravity where the bodies are, N and N m
 };
 
 }  // namespace apothem

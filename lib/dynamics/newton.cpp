@@ -28,6 +28,8 @@ constexpr double kReach = 0.5;    // of a rigid body's inradius
 constexpr double kNodeReach = 8;  // of the shortest edge
 // Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
 constexpr double kMeshGrowth = 100;
+// Of a step in time: forces out of balance over all forces, and places.
+constexpr double kStepResidual = 1e-7, kRoundedPlaces = 4e-16;
 // Pivots nearer to zero are round-off, of the largest one.
 constexpr double kPivotNoise = 1e-11;
 
@@ -68,10 +70,11 @@ double Equilibrium::shortened(const std::vector<double>& step) const {
 }
 
 // How far a coordinate moves in one iteration, so that no contact is jumped over, m or rad.
-double Equilibrium::reach(size_t c) const {
-  if (c >= first_) return kNodeReach * shortest_;
-  const double inradius = model_.bodies[c / 3].inradius;
-  return kReach * inradius / (c % 3 == 2 ? radius_[c / 3] : 1);
+double Equilibrium::reach(size_t c) const { return (c < first_ ? kReach : kNodeReach) * length(c); }
+
+double Equilibrium::length(size_t c) const {
+  if (c >= first_) return shortest_;
+  return model_.bodies[c / 3].inradius / (c % 3 == 2 ? radius_[c / 3] : 1);
 }
 
 // The first shift: with it nothing moves farther than its reach by the forces out of balance.
@@ -263,6 +266,48 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   result.iterations = path.all;
   result.negative_pivots = negative_pivots(state);
   return Verdict::found;
+}
+
+// Whether an iteration that leads over `step` changes no more than the rounding of places.
+bool Equilibrium::is_round_off(const State& state, const std::vector<double>& step) const {
+  for (size_t c = 0; c < step.size(); ++c) {
+    double place = std::abs(state.x[c]);
+    if (c < first_) place += radius_[c / 3] / (c % 3 == 2 ? radius_[c / 3] : 1);
+    if (std::abs(step[c]) > kRoundedPlaces * place) return false;
+  }
+  return true;
+}
+
+// The forces that act on what is free, as accelerations, in the norm of shifted_residual.
+double Equilibrium::size_of_forces() const {
+  double sum = 0;
+  for (size_t c = 0; c < rest_.size(); ++c) {
+    if (!held(c)) sum += (rest_[c] * rest_[c] + weight(c) * weight(c)) / dofs_.mass(c);
+  }
+  return std::sqrt(sum);
+}
+
+bool Equilibrium::step(State& state, const State& before, const std::vector<double>& base,
+                       double h) {
+  NewtonPath path;
+  path.damped = true;
+  path.shift = 1 / (h * h);
+  path.base = base;
+  double size = 0;
+  bool known = false;
+  for (int i = 0; i < kMostInStep; ++i) {
+    if (!known) find_forces(state, before);
+    path.residual = shifted_residual(state, path);
+    if (!std::isfinite(path.residual)) return false;
+    size = std::max(size, size_of_forces());
+    if (path.residual <= kStepResidual * size) return true;
+    if (i > 0 && is_round_off(state, step_)) return true;
+    path.iteration = 1;
+    if (!find_step(state, path, false)) return false;
+    known = go(state, before, path);
+    ++iterations_;
+  }
+  return false;
 }
 
 // Of the tangent at the present places; -1 where that is not symmetric, and they do not tell.

@@ -50,6 +50,19 @@ struct ContactCounts {
   }
 };
 
+/// What the implicit steps of a run were.
+struct ImplicitCounts {
+  std::int64_t steps = 0;       ///< that were taken
+  std::int64_t ticks = 0;       ///< steps of velocity Verlet in their place
+  std::int64_t rejected = 0;    ///< that were too long for the accuracy, or found no places
+  std::int64_t phases = 0;      ///< of implicit steps one after the other
+  std::int64_t iterations = 0;  ///< of Newton's method
+  void fields(Archive& archive) {
+    archive("steps", steps)("ticks", ticks)("rejected", rejected)("phases", phases)("iterations",
+                                                                                    iterations);
+  }
+};
+
 /// How the equilibrium of a load step was found.
 struct LoadStep {
   double time = 0;              ///< s

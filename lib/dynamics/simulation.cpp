@@ -10,6 +10,7 @@
 #include "lib/dynamics/equilibrium.hpp"
 #include "lib/dynamics/fold_watch.hpp"
 #include "lib/dynamics/gravity_history.hpp"
+#include "lib/dynamics/implicit.hpp"
 #include "lib/dynamics/loads.hpp"
 #include "lib/dynamics/mass_damping.hpp"
 #include "lib/dynamics/settle.hpp"
@@ -26,6 +27,7 @@ constexpr std::int64_t kLongOnesTimedEvery = 5;
 constexpr size_t kLong = 300;               // coordinates
 constexpr double kSettled = 1e-9;           // of the loads, out of balance at a settled start
 constexpr std::int64_t kWatchedEvery = 64;  // steps between looks at places and shapes
+constexpr double kMostTicks = 1e15;         // of an implicit step
 
 const std::vector<double>& mass_of(const Elements* elements) {
   static const std::vector<double> kNone;
@@ -57,6 +59,9 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
   if (time.statics) {
     equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, contact_, time.tolerance);
+  }
+  if (time.scheme != TimeScheme::verlet) {
+    implicit_ = std::make_unique<ImplicitSteps>(model, time, dofs_, terms_, contact_);
   }
   try {
     find_forces(state_.v, 0);
@@ -109,9 +114,9 @@ void Simulation::start_ledger() {
   guard_.start(ledger_.close(state_, terms));
 }
 
-void Simulation::step() {
+void Simulation::step(double horizon) {
   try {
-    take_step();
+    if (!implicit_ || !take_implicit_step(horizon)) take_step();
   } catch (const Unstable& error) {
     explain(error);
   }
@@ -154,6 +159,44 @@ void Simulation::take_step() {
   clock_.lap(Phase::integrate);
   timed_steps_ += timed;
   watch();
+}
+
+// False if velocity Verlet is to take the step.
+bool Simulation::take_implicit_step(double horizon) {
+  const double dt = step_size();
+  if (!implicit_->due(state_, dt)) return false;
+  const double left = std::min(std::ceil((horizon - state_.time) / dt - 1e-6), kMostTicks);
+  const double error = energies().total_error;
+  clock_.start(false);
+  const std::int64_t ticks = implicit_->try_step(
+      state_, *control_, std::max<std::int64_t>(1, static_cast<std::int64_t>(left)));
+  if (ticks == 0) {
+    restore_forces();
+    return false;
+  }
+  control_->advance(state_, ticks);
+  find_forces(state_.v, 0, 0, true);
+  const State& middle = implicit_->finish(state_);
+  const double h = implicit_->length();
+  for (const auto& term : terms_) term->book(middle, h, ledger_);
+  ledger_.book_implicit(implicit_->before(), state_, h);
+  damp(h);
+  ledger_.add_numerical_loss(error - energies().total_error);
+  if (!implicit_->running()) restore_forces();
+  watch(true);
+  return true;
+}
+
+// What velocity Verlet goes on from after an implicit step, or after one that has been given up.
+void Simulation::restore_forces() {
+  if (contact_) contact_->drop_trial();
+  for (const auto& term : terms_) term->refresh(state_);
+  find_forces(state_.v, 0);
+  finish_look();
+}
+
+const ImplicitCounts* Simulation::implicit_counts() const {
+  return implicit_ ? &implicit_->counts() : nullptr;
 }
 
 void Simulation::take_absent_out() {
@@ -290,8 +333,8 @@ void Simulation::settle(const std::function<bool()>& stop) {
   for (const auto& term : terms_) term->start_ledger();
 }
 
-void Simulation::watch() {
-  const bool regular = state_.step % kWatchedEvery == 0;
+void Simulation::watch(bool always) {
+  const bool regular = always || state_.step % kWatchedEvery == 0;
   if (regular) {
     if (!std::isfinite(dofs_.kinetic(state_))) refuse_infinite(state_, "a body");
     for (const auto& term : terms_) term->watch(state_);
@@ -378,6 +421,7 @@ void Simulation::fields(Archive& archive) {
   if (population_) archive("population", *population_);
   for (size_t i = 0; i < terms_.size(); ++i) archive(fmt::format("term_{}", i).c_str(), *terms_[i]);
   if (equilibrium_) archive("equilibrium", *equilibrium_);
+  if (implicit_) archive("implicit", *implicit_);
 }
 
 void Simulation::refresh() {

@@ -8,6 +8,7 @@
 // any number of threads and whenever the search runs.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@ struct ContactNumbers;
 class ContactTerm;
 class Elements;
 class Equilibrium;
+class ImplicitSteps;
 
 class Simulation {
  public:
@@ -50,8 +52,10 @@ class Simulation {
   /// loaded that was written with the same term, which must then follow from the state alone.
   void add(std::unique_ptr<Term> term);
 
-  /// One step. Throws Unstable; the state is then not to be trusted.
-  void step();
+  /// One step of velocity Verlet, or an implicit one of the length of several, which ends at the
+  /// first step at or after `horizon` (s) at the latest. Throws Unstable; the state is then not to
+  /// be trusted.
+  void step(double horizon = HUGE_VAL);
 
   /// Lets bodies leave, and others come with the velocities of their model. What that does to
   /// energies and momenta is booked as work and impulses from outside.
@@ -88,6 +92,8 @@ class Simulation {
   /// How the step was chosen; its limit changes if contacts turn out stiffer.
   [[nodiscard]] const StepChoice& step_choice() const { return control_->choice(); }
   [[nodiscard]] const StepChanges& step_changes() const { return control_->changes(); }
+  /// Of scenes with implicit steps; null in others.
+  [[nodiscard]] const ImplicitCounts* implicit_counts() const;
 
   /// Throws Unstable if the run has made energy (energy_guard.hpp). Dynamic steps see to this by
   /// themselves; it is asked once more where a run ends.
@@ -128,6 +134,8 @@ class Simulation {
   // Work and impulse from outside, with the error of energy and the momentum before they came.
   void book_change(double error, const Impulse& momentum);
   void take_step();
+  bool take_implicit_step(double horizon);
+  void restore_forces();
   void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
@@ -137,7 +145,7 @@ class Simulation {
   bool finish_contact(double dt);
   void finish_look();
   void settle(const std::function<bool()>& stop);
-  void watch();
+  void watch(bool always = false);
   void look_at_energy(bool last);
   [[noreturn]] void refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const;
   [[nodiscard]] Energies losses() const;
@@ -152,6 +160,7 @@ class Simulation {
   Elements* elements_ = nullptr;              // of the terms: for reports
   ContactTerm* contact_ = nullptr;            // likewise
   std::unique_ptr<Equilibrium> equilibrium_;  // only in static scenes
+  std::unique_ptr<ImplicitSteps> implicit_;   // only where the scheme asks for them
 
   std::unique_ptr<Population> population_;  // only where bodies come or go
   std::optional<StepControl> control_;

@@ -32,10 +32,10 @@ StepControl::StepControl(const Model& model, const TimeSettings& time, const Ste
   changes_.shortest = choice_.step;
 }
 
-void StepControl::advance(State& state) {
-  ++state.step;
-  ++part_;
-  state.time = base_time_ + static_cast<double>(state.step - base_step_) * choice_.step;
+void StepControl::advance(State& state, std::int64_t steps) {
+  state.time = time_after(state, steps);
+  state.step += steps;
+  part_ += steps;
 }
 
 void StepControl::follow(const State& state, std::span<const double> lambda) {

@@ -45,8 +45,12 @@ class StepControl {
   [[nodiscard]] const StepChoice& choice() const { return choice_; }
   [[nodiscard]] const StepChanges& changes() const { return changes_; }
 
-  /// Counts one more step in the state, and finds its time.
-  void advance(State& state);
+  /// Counts more steps in the state, and finds its time.
+  void advance(State& state, std::int64_t steps = 1);
+  /// The time so many steps after the state, s.
+  [[nodiscard]] double time_after(const State& state, std::int64_t steps) const {
+    return base_time_ + static_cast<double>(state.step + steps - base_step_) * choice_.step;
+  }
   /// After a step, with the bound of stiffness over inertia of each rigid body's contacts, 1/s^2.
   /// Throws Unstable if a fixed step is above the limit.
   void follow(const State& state, std::span<const double> lambda);

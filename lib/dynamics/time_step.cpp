@@ -259,7 +259,7 @@ StepChoice choose_step(const Model& model, const TimeSettings& time, const StepB
   }
   if (time.fixed_step) {
     choice.step = *time.fixed_step;
-    if (choice.step > choice.limit.step) {
+    if (time.scheme != TimeScheme::implicit && choice.step > choice.limit.step) {
       throw Unrunnable(
           fmt::format("{} s is above the stability limit of {:.6g} s ({}); give a smaller "
                       "step or \"auto\"",

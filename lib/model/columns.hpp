@@ -129,9 +129,9 @@ inline constexpr std::array kPointColumns{
 inline constexpr std::array kSurfaceColumns{Column{"pressure", "Pa"}, Column{"half_width", "m"}};
 /// Columns of the ledgers, energy.csv and momentum.csv, after the time.
 inline constexpr std::array kEnergyColumns{
-    Column{"kinetic", "J"},       Column{"strain", "J"},        Column{"contact", "J"},
-    Column{"gravity", "J"},       Column{"friction_loss", "J"}, Column{"damping_loss", "J"},
-    Column{"external_work", "J"}, Column{"total_error", "J"}};
+    Column{"kinetic", "J"},        Column{"strain", "J"},        Column{"contact", "J"},
+    Column{"gravity", "J"},        Column{"friction_loss", "J"}, Column{"damping_loss", "J"},
+    Column{"numerical_loss", "J"}, Column{"external_work", "J"}, Column{"total_error", "J"}};
 inline constexpr std::array kMomentumColumns{
     Column{"px", "kg m/s"},        Column{"py", "kg m/s"},
     Column{"angular", "kg m^2/s"}, Column{"px_error", "kg m/s"},

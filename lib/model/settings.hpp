@@ -10,9 +10,14 @@
 
 namespace apothem {
 
+/// How motion is integrated over time: by velocity Verlet, by long implicit steps
+/// (dynamics/implicit.hpp), or by whichever of them suits the moment.
+enum class TimeScheme { verlet, implicit, automatic };
+
 struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
+  TimeScheme scheme = TimeScheme::verlet;
   /// Energy error allowed per impact, of its energy: chooses an automatic step.
   double accuracy = 1e-4;
   /// Automatic step over the stability limit of contacts, and of finite elements; empty: from the

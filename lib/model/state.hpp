@@ -109,7 +109,8 @@ struct State {
 };
 
 /// The energy ledger of the moving bodies and the contacts between them and all others, in J.
-/// kinetic + strain + contact + gravity + friction_loss + damping_loss - external_work is constant;
+/// kinetic + strain + contact + gravity + friction_loss + damping_loss + numerical_loss -
+/// external_work is constant;
 /// total_error is how far it is from its value at time 0.
 struct Energies {
   double kinetic = 0;
@@ -118,6 +119,8 @@ struct Energies {
   double gravity = 0;  ///< zero at time 0
   double friction_loss = 0;
   double damping_loss = 0;
+  double numerical_loss =
+      0;  ///< what implicit steps take from vibrations that are too fast for them
   double external_work = 0;  ///< done by loads, bodies and supports with prescribed motion
   double total_error = 0;
 };

@@ -127,7 +127,7 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
   }
   rows += '\n';
   add_row(energy_.rows, state.time, e.kinetic, e.strain, e.contact, e.gravity, e.friction_loss,
-          e.damping_loss, e.external_work, e.total_error);
+          e.damping_loss, e.numerical_loss, e.external_work, e.total_error);
   add_row(momentum_.rows, state.time, p.x, p.y, p.angular, p.x_error, p.y_error, p.angular_error);
   if (rows.size() > kLongEnough) flush();
 }

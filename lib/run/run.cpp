@@ -205,24 +205,34 @@ void Run::require_forces() const {
                         list));
 }
 
+// Whether it is time to look at the clock and at the rules. An implicit step counts many.
+bool Run::is_look() const {
+  return scene_.time.statics || state().step / kLookEvery != step_before_ / kLookEvery;
+}
+
 bool Run::try_step() {
   if (reached(scene_.time.end) || !stopped_by_.empty()) return false;
   require_forces();
   forces_before_.reset();
   if (last_row_ < 0 && !settings_.resume) record(true, true);
+  step_before_ = state().step;
   if (scene_.time.statics) {
     if (!load_step()) return false;
   } else {
     dynamic_step();
   }
-  if (scene_.time.statics || state().step % kLookEvery == 0) look_for_stop();
+  if (is_look()) look_for_stop();
   if (on_step_) on_step_();
   if (ended()) simulation_->check_energy();
   return true;
 }
 
+// The next time at which something is recorded, or the run ends, s. It does not depend on what the
+// caller is going to do, so that a run that is stopped goes on bit for bit.
+double Run::horizon() const { return std::min({scene_.time.end, rows_.time(), pictures_.time()}); }
+
 void Run::dynamic_step() {
-  simulation_->step();
+  simulation_->step(horizon());
   const double step = simulation_->step_size();
   const bool last = reached(scene_.time.end);
   const bool row = rows_.due(state().time, step);
@@ -258,7 +268,7 @@ void Run::loop(double until) {
     return state().step < count && next <= until * (1 + 1e-12);
   };
   while (!asked_to_stop() && stopped_by_.empty() && more() && step()) {
-    if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
+    if (!is_look()) continue;
     if (on_progress_) on_progress_(*this);
     // Not of a run that has just been stopped: a rule is looked at after a step, and a run that
     // goes on from here would take one more before it knows.

@@ -50,6 +50,8 @@ class Schedule {
   explicit Schedule(double interval = 0, std::int64_t next = 1)
       : interval_(interval), next_(next) {}
   [[nodiscard]] std::int64_t next() const { return next_; }
+  /// Of the next record, s.
+  [[nodiscard]] double time() const { return static_cast<double>(next_) * interval_; }
   /// `time` and step size in s.
   bool due(double time, double step);
 
@@ -140,6 +142,8 @@ class Run {
   void loop(double until);
   bool try_step();
   void dynamic_step();
+  [[nodiscard]] bool is_look() const;
+  [[nodiscard]] double horizon() const;
   bool load_step();
   void record(bool row, bool frame);
   void write_row();
@@ -167,6 +171,7 @@ class Run {
   std::optional<FrameWriter> frames_;     // likewise
   Schedule rows_, pictures_;
   std::int64_t last_row_ = -1, last_frame_ = -1;  // steps
+  std::int64_t step_before_ = 0;                  // before the last one
   std::function<void(const Run&)> on_progress_;
   std::function<void()> on_step_;
   std::vector<AddedForce> forces_;

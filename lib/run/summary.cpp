@@ -167,6 +167,14 @@ std::string summary_text(const Run& run) {
              {{"candidates", static_cast<double>(counts.candidate_pairs) / steps},
               {"touching", static_cast<double>(counts.touching_pairs) / steps}}},
             {"searches", counts.searches}};
+  if (const ImplicitCounts* implicit = simulation.implicit_counts()) {
+    json["implicit"] = {{"steps", implicit->steps},
+                        {"in_place_of", implicit->ticks},
+                        {"phases", implicit->phases},
+                        {"rejected", implicit->rejected},
+                        {"iterations", implicit->iterations},
+                        {"numerical_loss", simulation.energies().numerical_loss}};
+  }
   if (!run.beginning().folder.empty()) json["from"] = beginning(run);
   add_peaks(json, run);
   json["final_state_hash"] = state_hash(state);

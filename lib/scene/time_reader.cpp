@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace apothem {
 namespace {
 
@@ -17,6 +19,7 @@ class TimeReader {
     features_.add(time_.statics ? Feature::static_run : Feature::dynamic_run, mode);
     if (const JsonValue* v = object.optional("load_steps")) load_steps(*v);
     if (const JsonValue* v = object.optional("tolerance")) tolerance(*v);
+    if (const JsonValue* v = object.optional("scheme")) scheme(*v);
     if (const JsonValue* v = object.optional("step")) step(*v);
     if (const JsonValue* v = object.optional("start")) start(*v);
     if (const JsonValue* v = object.optional("accuracy")) accuracy(*v);
@@ -39,6 +42,15 @@ class TimeReader {
     if (!(time_.tolerance >= 1e-12 && time_.tolerance <= 1e-2)) {
       in_.fail(value, fmt::format("must lie between 1e-12 and 1e-2, not {}", time_.tolerance));
     }
+  }
+
+  void scheme(const JsonValue& value) {
+    features_.add(Feature::scheme, &value);
+    constexpr std::array kSchemes{TimeScheme::verlet, TimeScheme::implicit, TimeScheme::automatic};
+    time_.scheme = kSchemes[in_.choice(value, {"verlet", "implicit", "auto"})];
+    if (time_.scheme == TimeScheme::implicit) features_.add(Feature::implicit_scheme, &value);
+    if (time_.scheme == TimeScheme::automatic) features_.add(Feature::automatic_scheme, &value);
+    if (time_.scheme != TimeScheme::verlet) features_.add(Feature::implicit_steps, &value);
   }
 
   void step(const JsonValue& value) {

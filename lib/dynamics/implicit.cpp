@@ -1,0 +1,185 @@
+#include "lib/dynamics/implicit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/unstable.hpp"
+
+namespace apothem {
+namespace {
+
+// Implicit steps are worth it from so many ticks on, and are tried with twice as many.
+constexpr std::int64_t kWorth = 8;
+constexpr std::int64_t kFirst = 2 * kWorth;
+constexpr std::int64_t kLookEvery = 64;  // ticks between looks whether to try
+constexpr std::int64_t kFirstWait = 512, kLongestWait = 1 << 16;
+constexpr double kFarthest = .2;  // of an inradius, which a step may lead over
+// Forces of stiff contacts at the end of a step tell of vibrations that have not died out: a step
+// that is three times as long as the one before makes them grow (docs/theory.md, "Implicit steps").
+constexpr double kMostLonger = 2, kMostShorter = 5, kReserve = .8;
+
+}  // namespace
+
+ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, DegreesOfFreedom& dofs,
+                             const Terms& terms, ContactTerm* contact)
+    : dofs_(dofs),
+      moves_(dofs),
+      contact_(contact),
+      equilibrium_(model, dofs, terms, contact, 0),
+      automatic_(time.scheme == TimeScheme::automatic),
+      fixed_(time.fixed_step.has_value()),
+      wait_(kFirstWait) {
+  const size_t size = dofs.layout().size();
+  acceleration_.assign(size, 0);
+  base_.assign(size, 0);
+  for (size_t c = 0; c < size; ++c) {
+    const bool angle = c < dofs.layout().node(0) && c % 3 == 2;
+    const double length = equilibrium_.length(angle ? c - 2 : c);
+    const double part = equilibrium_.length(c) / length;
+    way_.push_back(time.accuracy * length * part);
+    const double fall = 2 * model.strongest_gravity() * time.accuracy * length;
+    speed_.push_back(fall > 0 ? std::sqrt(fall) * part : HUGE_VAL);
+  }
+}
+
+bool ImplicitSteps::due(const State& state, double dt) const {
+  if (!automatic_ || running_) return true;
+  if (state.step < next_try_ || state.step % kLookEvery != 0) return false;
+  const double h = static_cast<double>(kFirst) * dt;
+  for (size_t c = 0; c < state.v.size(); ++c) {
+    const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
+    const double a = dofs_.inverse_mass()[c] * state.f[c] + gravity;
+    const double v = std::abs(state.v[c]) + h * std::abs(a);
+    if (v * h > way_[c] || v > speed_[c]) return false;
+  }
+  return true;
+}
+
+// So that no body moves farther than a part of its inradius, s.
+double ImplicitSteps::longest(const State& state) const {
+  double fastest = 0;
+  for (size_t c = 0; c < state.v.size(); ++c) {
+    fastest = std::max(fastest, std::abs(state.v[c]) / equilibrium_.length(c));
+  }
+  return kFarthest / fastest;
+}
+
+std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, std::int64_t most) {
+  before_ = state;
+  for (size_t c = 0; c < acceleration_.size(); ++c) {
+    acceleration_[c] = dofs_.inverse_mass()[c] * state.f[c] +
+                       (dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c]);
+  }
+  if (!running_) {
+    ticks_ = automatic_ ? kFirst : 1;
+    phase_from_ = state.step;
+  }
+  const double dt = control.choice().step;
+  const double fit = longest(state) / dt;
+  if (fit < static_cast<double>(most)) most = std::max<std::int64_t>(1, std::int64_t(fit));
+  for (;;) {
+    // The ticks that are left are shared out evenly.
+    const std::int64_t wanted = fixed_ ? 1 : std::clamp<std::int64_t>(ticks_, 1, most);
+    const std::int64_t parts = (most + wanted - 1) / wanted, ticks = (most + parts - 1) / parts;
+    h_ = static_cast<double>(ticks) * dt;
+    const bool found = attempt(state, control.time_after(before_, ticks));
+    const double off = found ? error() : HUGE_VAL;
+    const double share = found ? kReserve / std::sqrt(std::max(off, 1e-30)) : 1 / kMostShorter;
+    const bool shortest = ticks == 1 || fixed_;
+    if (found && (off <= 1 || shortest)) {
+      const auto next = static_cast<std::int64_t>(static_cast<double>(ticks) *
+                                                  std::clamp(share, 1 / kMostShorter, kMostLonger));
+      ticks_ =
+          std::max<std::int64_t>(ticks < ticks_ && share >= 1 ? std::max(next, ticks_) : next, 1);
+      if (automatic_ && ticks_ < kWorth) {
+        // The step is good, and the next one is velocity Verlet's.
+        give_up(before_.step + ticks);
+      } else if (!running_) {
+        ++counts_.phases;
+        running_ = true;
+      }
+      ++counts_.steps;
+      counts_.ticks += ticks;
+      counts_.iterations = equilibrium_.iterations();
+      return ticks;
+    }
+    ++counts_.rejected;
+    if (shortest) break;
+    ticks_ = std::max<std::int64_t>(
+        1, std::int64_t(static_cast<double>(ticks) * std::clamp(share, 1 / kMostShorter, .5)));
+    if (automatic_ && ticks_ < kWorth) break;
+  }
+  state = before_;
+  if (automatic_) {
+    give_up(before_.step);
+    return 0;
+  }
+  throw Unstable(fmt::format(
+      "Newton's method finds no places at the end of a step of {:.3g} s {}: {}", h_,
+      at_time(before_),
+      fixed_ ? "give a smaller time.step or \"auto\""
+             : "bodies may be about to pass through each other; raise contact.normal_stiffness, or "
+               "take the scheme \"verlet\""));
+}
+
+// Goes on with velocity Verlet, the longer the shorter this phase was.
+void ImplicitSteps::give_up(std::int64_t step) {
+  const bool lasted = step - phase_from_ >= wait_;
+  wait_ = lasted ? kFirstWait : std::min(2 * wait_, kLongestWait);
+  next_try_ = step + wait_;
+  running_ = false;
+}
+
+// One step of h_ that ends at `time`.
+bool ImplicitSteps::attempt(State& state, double time) {
+  state = before_;
+  state.time = time;
+  for (size_t c = 0; c < base_.size(); ++c) state.v[c] += h_ / 2 * acceleration_[c];
+  moves_.steer(state, h_);
+  moves_.drift(state, h_);
+  for (size_t c = 0; c < base_.size(); ++c) base_[c] = state.x[c] - h_ * h_ * acceleration_[c];
+  middle_.v = state.v;
+  try {
+    if (contact_) contact_->check_drift(state, h_);
+    return equilibrium_.step(state, before_, base_, h_);
+  } catch (const Unstable&) {
+    return false;
+  }
+}
+
+// How far the places and velocities of a step are off, over what the accuracy allows: the
+// acceleration has changed over the step. Proportional to the square of its length.
+double ImplicitSteps::error() const {
+  double worst = 0;
+  for (size_t c = 0; c < base_.size(); ++c) {
+    if (!dofs_.can_move(c)) continue;
+    const double change = equilibrium_.forces()[c] * dofs_.inverse_mass()[c] - acceleration_[c];
+    const double speed = h_ * std::abs(change);
+    worst = std::max({worst, h_ * speed / way_[c], (speed / speed_[c]) * (speed / speed_[c])});
+  }
+  return worst;
+}
+
+const State& ImplicitSteps::finish(State& state) {
+  const std::vector<double> half = middle_.v;
+  middle_ = state;
+  for (size_t c = 0; c < base_.size(); ++c) {
+    const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
+    const double a = dofs_.inverse_mass()[c] * state.f[c] + gravity;
+    middle_.v[c] = half[c] + h_ * (a - acceleration_[c]);
+    middle_.x[c] = (before_.x[c] + state.x[c]) / 2;
+    state.v[c] = middle_.v[c] + h_ / 2 * a;
+  }
+  moves_.follow(state);
+  return middle_;
+}
+
+void ImplicitSteps::fields(Archive& archive) {
+  archive("ticks", ticks_)("running", running_)("next_try", next_try_)("wait", wait_);
+  archive("phase_from", phase_from_)("counts", counts_);
+}
+
+}  // namespace apothem
