@@ -19,6 +19,7 @@ class GravityHistory final : public Term {
   GravityHistory(const Model& model, DegreesOfFreedom& dofs) : model_(model), dofs_(dofs) {}
 
   [[nodiscard]] std::string describe() const override;
+  [[nodiscard]] bool changes_with_time() const override { return true; }
   /// Scales gravity to the time of the state; it is no part of the forces.
   void add_forces(const Evaluation& evaluation) override;
   void add_energies(const State& /*state*/, Energies& e) override { e.external_work += work_; }

@@ -17,6 +17,9 @@ constexpr std::int64_t kFirst = 2 * kWorth;
 constexpr std::int64_t kLookEvery = 64;  // ticks between looks whether to try
 constexpr std::int64_t kFirstWait = 512, kLongestWait = 1 << 16;
 constexpr double kFarthest = .2;  // of an inradius, which a step may lead over
+// Parts of an inradius: bodies that move less in a step rest, and those that move still less do so
+// by rounding alone.
+constexpr double kRest = 1e-10, kRounded = 1e-12;
 // Forces of stiff contacts at the end of a step tell of vibrations that have not died out: a step
 // that is three times as long as the one before makes them grow (docs/theory.md, "Implicit steps").
 constexpr double kMostLonger = 2, kMostShorter = 5, kReserve = .8;
@@ -27,6 +30,7 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
                              const Terms& terms, ContactTerm* contact)
     : dofs_(dofs),
       moves_(dofs),
+      terms_(terms),
       contact_(contact),
       equilibrium_(model, dofs, terms, contact, 0),
       automatic_(time.scheme == TimeScheme::automatic),
@@ -58,6 +62,17 @@ bool ImplicitSteps::due(const State& state, double dt) const {
   return true;
 }
 
+bool ImplicitSteps::is_frozen(const State& state) const {
+  return running_ && stays_ && !fixed_ && dofs_.driven().empty() &&
+         std::ranges::all_of(state.v, [](double v) { return v == 0; }) &&
+         std::ranges::none_of(terms_, [](const auto& t) { return t->changes_with_time(); });
+}
+
+void ImplicitSteps::count_rest(std::int64_t ticks) {
+  ++counts_.steps;
+  counts_.ticks += ticks;
+}
+
 // So that no body moves farther than a part of its inradius, s.
 double ImplicitSteps::longest(const State& state) const {
   double fastest = 0;
@@ -73,6 +88,7 @@ std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, s
     acceleration_[c] = dofs_.inverse_mass()[c] * state.f[c] +
                        (dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c]);
   }
+  if (rests_) std::ranges::fill(acceleration_, 0.);
   if (!running_) {
     ticks_ = automatic_ ? kFirst : 1;
     phase_from_ = state.step;
@@ -128,6 +144,7 @@ std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, s
 // Goes on with velocity Verlet, the longer the shorter this phase was.
 void ImplicitSteps::give_up(std::int64_t step) {
   const bool lasted = step - phase_from_ >= wait_;
+  rests_ = stays_ = false;
   wait_ = lasted ? kFirstWait : std::min(2 * wait_, kLongestWait);
   next_try_ = step + wait_;
   running_ = false;
@@ -140,7 +157,11 @@ bool ImplicitSteps::attempt(State& state, double time) {
   for (size_t c = 0; c < base_.size(); ++c) state.v[c] += h_ / 2 * acceleration_[c];
   moves_.steer(state, h_);
   moves_.drift(state, h_);
-  for (size_t c = 0; c < base_.size(); ++c) base_[c] = state.x[c] - h_ * h_ * acceleration_[c];
+  for (size_t c = 0; c < base_.size(); ++c) {
+    base_[c] = state.x[c] - h_ * h_ * acceleration_[c];
+    // What presses on a body is found by the iteration; free flight is known.
+    if (dofs_.can_move(c) && before_.f[c] != 0) state.x[c] = base_[c];
+  }
   middle_.v = state.v;
   try {
     if (contact_) contact_->check_drift(state, h_);
@@ -163,15 +184,31 @@ double ImplicitSteps::error() const {
   return worst;
 }
 
+// How far the step has led, in lengths of the bodies.
+double ImplicitSteps::farthest(const State& state) const {
+  double farthest = 0;
+  for (size_t c = 0; c < base_.size(); ++c) {
+    farthest = std::max(farthest, std::abs(state.x[c] - before_.x[c]) / equilibrium_.length(c));
+  }
+  return farthest;
+}
+
+// Forces are known to the rounding of places only. Where everything rests, velocities that followed
+// them would never die out: they follow the places.
 const State& ImplicitSteps::finish(State& state) {
   const std::vector<double> half = middle_.v;
+  const double way = farthest(state);
+  rests_ = way <= kRest;
+  stays_ = way == 0;
+  const double rate = way <= kRounded ? 0 : 1 / h_;
   middle_ = state;
   for (size_t c = 0; c < base_.size(); ++c) {
     const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
     const double a = dofs_.inverse_mass()[c] * state.f[c] + gravity;
-    middle_.v[c] = half[c] + h_ * (a - acceleration_[c]);
+    middle_.v[c] = rests_ && dofs_.can_move(c) ? (state.x[c] - before_.x[c]) * rate
+                                               : half[c] + h_ * (a - acceleration_[c]);
     middle_.x[c] = (before_.x[c] + state.x[c]) / 2;
-    state.v[c] = middle_.v[c] + h_ / 2 * a;
+    state.v[c] = middle_.v[c] + (rests_ ? 0 : h_ / 2 * a);
   }
   moves_.follow(state);
   return middle_;
@@ -179,7 +216,7 @@ const State& ImplicitSteps::finish(State& state) {
 
 void ImplicitSteps::fields(Archive& archive) {
   archive("ticks", ticks_)("running", running_)("next_try", next_try_)("wait", wait_);
-  archive("phase_from", phase_from_)("counts", counts_);
+  archive("phase_from", phase_from_)("rests", rests_)("stays", stays_)("counts", counts_);
 }
 
 }  // namespace apothem

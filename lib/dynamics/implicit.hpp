@@ -34,6 +34,13 @@ class ImplicitSteps {
   /// Whether an implicit step is to be tried from this state. With the scheme `auto` that is so
   /// where no body would move noticeably over a number of ticks of dt (s).
   [[nodiscard]] bool due(const State& state, double dt) const;
+  /// Whether nothing has moved in the last step and nothing can begin to move, so that the next one
+  /// would be the same. Bodies of prescribed motion must stay where they are until then.
+  [[nodiscard]] bool is_frozen(const State& state) const;
+  /// Something has changed from outside.
+  void disturb() { rests_ = stays_ = false; }
+  /// Counts a step that was not computed for that.
+  void count_rest(std::int64_t ticks);
   /// Tries steps of at most `most` ticks, until one is as accurate as asked. Returns its ticks,
   /// with the state at its end, whose velocities and forces are not set, and the friction of
   /// contacts tried there. Returns 0 if only steps would do that are not worth it, with the state
@@ -56,10 +63,12 @@ class ImplicitSteps {
   [[nodiscard]] double longest(const State& state) const;
   bool attempt(State& state, double time);
   [[nodiscard]] double error() const;
+  [[nodiscard]] double farthest(const State& state) const;
   void give_up(std::int64_t step);
 
   const DegreesOfFreedom& dofs_;
   DegreesOfFreedom& moves_;
+  const Terms& terms_;
   ContactTerm* contact_;
   Equilibrium equilibrium_;
   // What a coordinate may be off after a step, m or rad, and its velocity: as much as makes a
@@ -69,6 +78,8 @@ class ImplicitSteps {
   bool fixed_;      // the steps are one tick each
   std::int64_t ticks_ = 1;
   bool running_ = false;         // the last step was an implicit one
+  bool rests_ = false;           // what has moved in it is hardly more than rounding
+  bool stays_ = false;           // nothing at all has moved
   std::int64_t next_try_ = 0;    // number of the step from which on another try is made
   std::int64_t wait_;            // steps between tries
   std::int64_t phase_from_ = 0;  // number of the step at which this phase has begun

@@ -14,6 +14,7 @@ class Loads final : public Term {
   explicit Loads(const Model& model) : model_(model) {}
 
   [[nodiscard]] std::string describe() const override;
+  [[nodiscard]] bool changes_with_time() const override { return true; }
   void add_forces(const Evaluation& evaluation) override;
   void book(const State& state, double h, Ledger& ledger) override;
   bool add_tangent(const State& state, Tangent& tangent) const override;

@@ -166,6 +166,7 @@ bool Simulation::take_implicit_step(double horizon) {
   const double dt = step_size();
   if (!implicit_->due(state_, dt)) return false;
   const double left = std::min(std::ceil((horizon - state_.time) / dt - 1e-6), kMostTicks);
+  if (implicit_->is_frozen(state_)) return rest(std::max<std::int64_t>(1, std::int64_t(left)));
   const double error = energies().total_error;
   clock_.start(false);
   const std::int64_t ticks = implicit_->try_step(
@@ -184,6 +185,17 @@ bool Simulation::take_implicit_step(double horizon) {
   ledger_.add_numerical_loss(error - energies().total_error);
   if (!implicit_->running()) restore_forces();
   watch(true);
+  return true;
+}
+
+// A step in which nothing moves, as it would come out.
+bool Simulation::rest(std::int64_t ticks) {
+  const double h = static_cast<double>(ticks) * step_size();
+  control_->advance(state_, ticks);
+  dofs_.steer(state_, h);
+  ledger_.book_implicit(state_, state_, h);
+  implicit_->count_rest(ticks);
+  watch(population_ != nullptr);
   return true;
 }
 
@@ -237,6 +249,7 @@ void Simulation::set_velocities(std::span<const double> velocities) {
 }
 
 void Simulation::book_change(double error, const Impulse& momentum) {
+  if (implicit_) implicit_->disturb();
   const Impulse after = dofs_.momentum(state_);
   ledger_.add_work(energies().total_error - error);
   ledger_.add_impulse(

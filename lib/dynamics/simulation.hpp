@@ -135,6 +135,7 @@ class Simulation {
   void book_change(double error, const Impulse& momentum);
   void take_step();
   bool take_implicit_step(double horizon);
+  bool rest(std::int64_t ticks);
   void restore_forces();
   void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;

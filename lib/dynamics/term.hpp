@@ -70,6 +70,9 @@ class Term {
   /// Lowers the bounds of the time step. Terms are asked in their order.
   virtual void bound_step(StepBounds& /*bounds*/) {}
 
+  /// Whether its forces may change though nothing moves.
+  [[nodiscard]] virtual bool changes_with_time() const { return false; }
+
   // For static runs:
   virtual void add_stiffness(const State& /*state*/, NodeStiffness& /*stiffness*/) {}
   /// Adds the derivative of minus its forces by the coordinates, where the last evaluation was.

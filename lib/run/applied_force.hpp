@@ -18,6 +18,7 @@ class AppliedForce final : public Term {
   AppliedForce(std::string name, const DegreesOfFreedom& dofs, Function function);
 
   [[nodiscard]] std::string describe() const override { return name_; }
+  [[nodiscard]] bool changes_with_time() const override { return true; }
   void add_forces(const Evaluation& evaluation) override;
   /// The ledger counts its work as external.
   void book(const State& state, double h, Ledger& ledger) override;
