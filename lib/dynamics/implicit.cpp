@@ -35,7 +35,8 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
       equilibrium_(model, dofs, terms, contact, 0),
       automatic_(time.scheme == TimeScheme::automatic),
       fixed_(time.fixed_step.has_value()),
-      wait_(kFirstWait) {
+      wait_(kFirstWait),
+      accuracy_(time.accuracy) {
   const size_t size = dofs.layout().size();
   acceleration_.assign(size, 0);
   base_.assign(size, 0);
@@ -44,6 +45,9 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
     const double length = equilibrium_.length(angle ? c - 2 : c);
     const double part = equilibrium_.length(c) / length;
     way_.push_back(time.accuracy * length * part);
+    if (!angle && dofs.can_move(c)) {
+      unnoticed_ += dofs.mass(c) * model.strongest_gravity() * way_.back() / 2;  // x and y
+    }
     const double fall = 2 * model.strongest_gravity() * time.accuracy * length;
     speed_.push_back(fall > 0 ? std::sqrt(fall) * part : HUGE_VAL);
   }
@@ -51,7 +55,12 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
 
 bool ImplicitSteps::due(const State& state, double dt) const {
   if (!automatic_ || running_) return true;
-  if (state.step < next_try_ || state.step % kLookEvery != 0) return false;
+  return state.step >= next_try_ && state.step % kLookEvery == 0 && is_quiet(state, dt);
+}
+
+// Whether no body would move noticeably in the first step of a phase, nor fast enough to bounce
+// noticeably.
+bool ImplicitSteps::is_quiet(const State& state, double dt) const {
   const double h = static_cast<double>(kFirst) * dt;
   for (size_t c = 0; c < state.v.size(); ++c) {
     const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
@@ -115,7 +124,7 @@ std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, s
         give_up(before_.step + ticks);
       } else if (!running_) {
         ++counts_.phases;
-        running_ = true;
+        running_ = begins_ = true;
       }
       ++counts_.steps;
       counts_.ticks += ticks;
@@ -148,6 +157,20 @@ void ImplicitSteps::give_up(std::int64_t step) {
   wait_ = lasted ? kFirstWait : std::min(2 * wait_, kLongestWait);
   next_try_ = step + wait_;
   running_ = false;
+}
+
+void ImplicitSteps::follow(const State& state, double dt, const Energies& before,
+                           const Energies& e) {
+  if (!automatic_ || !running_) return;
+  if (begins_) {
+    begins_ = false;
+    loss_from_ = before.numerical_loss;
+    work_from_ = before.external_work - before.gravity;
+  }
+  const double work = e.external_work - e.gravity;
+  const double still = accuracy_ * accuracy_ * (e.strain + e.contact);
+  const double allowed = std::max(unnoticed_, still) + accuracy_ * std::abs(work - work_from_);
+  if (e.numerical_loss - loss_from_ > allowed || !is_quiet(state, dt)) give_up(state.step);
 }
 
 // One step of h_ that ends at `time`.
@@ -216,7 +239,8 @@ const State& ImplicitSteps::finish(State& state) {
 
 void ImplicitSteps::fields(Archive& archive) {
   archive("ticks", ticks_)("running", running_)("next_try", next_try_)("wait", wait_);
-  archive("phase_from", phase_from_)("rests", rests_)("stays", stays_)("counts", counts_);
+  archive("phase_from", phase_from_)("rests", rests_)("stays", stays_)("loss_from", loss_from_)(
+      "work_from", work_from_)("counts", counts_);
 }
 
 }  // namespace apothem

@@ -51,6 +51,10 @@ class ImplicitSteps {
   /// state of the middle of the step, with its mean velocities.
   const State& finish(State& state);
   [[nodiscard]] const State& before() const { return before_; }
+  /// After such a step of ticks of dt (s): the energies before and after it, with what it has
+  /// taken. With the scheme `auto` a phase ends that has taken more than motion that nobody
+  /// notices, or where a body moves noticeably.
+  void follow(const State& state, double dt, const Energies& before, const Energies& after);
   /// Whether the next step is probably an implicit one as well.
   [[nodiscard]] bool running() const { return running_; }
   /// Of the last step, s.
@@ -64,6 +68,7 @@ class ImplicitSteps {
   bool attempt(State& state, double time);
   [[nodiscard]] double error() const;
   [[nodiscard]] double farthest(const State& state) const;
+  [[nodiscard]] bool is_quiet(const State& state, double dt) const;
   void give_up(std::int64_t step);
 
   const DegreesOfFreedom& dofs_;
@@ -83,6 +88,10 @@ class ImplicitSteps {
   std::int64_t next_try_ = 0;    // number of the step from which on another try is made
   std::int64_t wait_;            // steps between tries
   std::int64_t phase_from_ = 0;  // number of the step at which this phase has begun
+  double unnoticed_ = 0;         // energy that lifts all bodies by what they may be off, J
+  double accuracy_;
+  bool begins_ = false;                   // this phase
+  double loss_from_ = 0, work_from_ = 0;  // at the start of this phase, J
   ImplicitCounts counts_;
   // Of the step that is tried.
   State before_, middle_;
