@@ -95,7 +95,7 @@ void add_family(std::vector<BenchmarkCase>& cases, const BenchmarkCase& all,
 std::vector<BenchmarkCase> benchmark_cases() {
   std::vector<BenchmarkCase> all;
   for (const auto cases : {machine_cases, pair_cases, contact_cases, element_cases, scene_cases,
-                           start_cases, big_polygon_cases, work_cases}) {
+                           start_cases, rest_cases, big_polygon_cases, work_cases}) {
     for (BenchmarkCase& c : cases()) all.push_back(std::move(c));
   }
   return all;

@@ -87,6 +87,7 @@ std::vector<BenchmarkCase> contact_cases();
 std::vector<BenchmarkCase> element_cases();
 std::vector<BenchmarkCase> scene_cases();
 std::vector<BenchmarkCase> start_cases();
+std::vector<BenchmarkCase> rest_cases();
 std::vector<BenchmarkCase> big_polygon_cases();
 std::vector<BenchmarkCase> work_cases();
 

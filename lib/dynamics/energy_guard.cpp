@@ -14,6 +14,9 @@ constexpr double kLargestError = 0.1;  // of the energy in play
 // random scenes; a dashpot that stops a body within a few steps may fall by some parts in a
 // hundred.
 constexpr double kFrictionFall = 0.01, kDampingFall = 0.1;
+// Implicit steps lose energy. The velocities that are reported half a step later may hide some for
+// a moment.
+constexpr double kNumericalFall = 0.1;
 constexpr double kArriving = 4;  // growth of the energy in play between regular looks
 constexpr double kHopeless =
     0.5;  // error, of the energy in play: no contact that passes is so coarse
@@ -73,6 +76,7 @@ EnergyGuard::Verdict EnergyGuard::excess(double error) const {
   if (!(error <= allowed())) return Verdict::unaccounted;
   if (friction_.fall > kFrictionFall * in_play_ + noise_) return Verdict::friction;
   if (damping_.fall > kDampingFall * in_play_ + noise_) return Verdict::damping;
+  if (numerical_.fall > kNumericalFall * in_play_ + noise_) return Verdict::numerical;
   return Verdict::good;
 }
 
@@ -87,6 +91,7 @@ EnergyGuard::Verdict EnergyGuard::judge(std::int64_t step, const Energies& e, bo
   in_play_ = std::max({in_play_, present, work});
   if (step % kEvery == 0) lately_ = in_play_;
   record(e);
+  numerical_.follow(e.numerical_loss);
   const Verdict verdict = excess(error);
   if (verdict == Verdict::good) {
     excess_since_ = -1;

@@ -26,7 +26,7 @@ class EnergyGuard {
   /// the first steps resolve neither the energy nor its error.
   static constexpr std::int64_t kArrival = 3 * kEvery;
 
-  enum class Verdict : unsigned char { good, unaccounted, friction, damping };
+  enum class Verdict : unsigned char { good, unaccounted, friction, damping, numerical };
 
   explicit EnergyGuard(const Model& model);
 
@@ -50,15 +50,16 @@ class EnergyGuard {
   /// How far the losses are below their largest values so far, J.
   [[nodiscard]] double friction_fall() const { return friction_.fall; }
   [[nodiscard]] double damping_fall() const { return damping_.fall; }
+  [[nodiscard]] double numerical_fall() const { return numerical_.fall; }
 
   void fields(Archive& archive) {
     archive("in_play", in_play_)("in_play_before", before_)("in_play_lately", lately_)(
         "largest_error", largest_error_)("excess_since", excess_since_)("credit", credit_);
-    archive("friction", friction_)("damping", damping_);
+    archive("friction", friction_)("damping", damping_)("numerical", numerical_);
   }
 
  private:
-  // What has been dissipated, J.
+  // What has been dissipated, also by implicit steps, J.
   struct Loss {
     double largest = 0;
     double fall = 0;  // from there
@@ -76,7 +77,7 @@ class EnergyGuard {
   double largest_error_ = 0;        // J
   std::int64_t excess_since_ = -1;  // step of the first look with it, or -1
   std::int64_t credit_ = 0;         // of work: see due()
-  Loss friction_, damping_;
+  Loss friction_, damping_, numerical_;
 };
 
 }  // namespace apothem

@@ -159,6 +159,25 @@ void ImplicitSteps::give_up(std::int64_t step) {
   running_ = false;
 }
 
+// The moments of a pair's forces balance where the bodies are at the end of the step, and act on
+// the bodies where they were at its start: what is left turns both of them.
+void ImplicitSteps::balance_spins(State& state) const {
+  if (!contact_ || rests_) return;
+  const RigidIndex rigid = state.layout.rigid_bodies;
+  for (const ContactRecord& contact : contact_->contacts().records()) {
+    if (contact.b >= rigid) continue;
+    const size_t a = state.layout.rigid(contact.a), b = state.layout.rigid(contact.b);
+    const auto way = [&](size_t c) {
+      return Vec2(state.x[c] - before_.x[c], state.x[c + 1] - before_.x[c + 1]);
+    };
+    const double twist = h_ * cross(way(a) - way(b), contact.normal + contact.tangential);
+    const bool both = dofs_.can_move(a + 2) && dofs_.can_move(b + 2);
+    for (const size_t c : {a + 2, b + 2}) {
+      state.v[c] += dofs_.inverse_mass()[c] * (both ? twist / 2 : twist);
+    }
+  }
+}
+
 void ImplicitSteps::follow(const State& state, double dt, const Energies& before,
                            const Energies& e) {
   if (!automatic_ || !running_) return;
@@ -233,6 +252,7 @@ const State& ImplicitSteps::finish(State& state) {
     middle_.x[c] = (before_.x[c] + state.x[c]) / 2;
     state.v[c] = middle_.v[c] + (rests_ ? 0 : h_ / 2 * a);
   }
+  balance_spins(state);
   moves_.follow(state);
   return middle_;
 }

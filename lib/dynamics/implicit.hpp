@@ -69,6 +69,7 @@ class ImplicitSteps {
   [[nodiscard]] double error() const;
   [[nodiscard]] double farthest(const State& state) const;
   [[nodiscard]] bool is_quiet(const State& state, double dt) const;
+  void balance_spins(State& state) const;
   void give_up(std::int64_t step);
 
   const DegreesOfFreedom& dofs_;

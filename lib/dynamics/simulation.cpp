@@ -383,6 +383,12 @@ void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool 
     stiffest = fmt::format(", of which \"{}\" with \"{}\" has the largest force",
                            model_.name_of(pair.a), model_.name_of(pair.b));
   }
+  if (verdict == EnergyGuard::Verdict::numerical) {
+    throw Unstable(fmt::format(
+        "implicit steps have given {:.3g} J back of what they had taken, which is energy out of "
+        "nothing, {}; {:.3g} J are in play: reduce time.step or time.accuracy",
+        guard_.numerical_fall(), at_time(state_), guard_.in_play()));
+  }
   if (verdict != EnergyGuard::Verdict::unaccounted) {
     const bool friction = verdict == EnergyGuard::Verdict::friction;
     throw Unstable(fmt::format(

@@ -141,3 +141,23 @@ TEST_CASE("a damped mesh on a rigid floor goes on with equal balances of energy"
   const Scene scene = read_scene_text(text, "scene.json", {});
   check_resumed(scene, scene.time.end / 2, 2, random, scene.time.end / 2);
 }
+
+TEST_CASE("runs with implicit steps that are stopped write the same files to the last byte",
+          "[resume]") {
+  std::mt19937 random(41);
+  struct Case {
+    const char* scene;
+    TimeScheme scheme;
+    double end;  // s
+  };
+  for (const auto& [name, scheme, end] :
+       {Case{"stack", TimeScheme::automatic, .6}, Case{"arch-stands", TimeScheme::automatic, 1},
+        Case{"incline-up-mu-06", TimeScheme::automatic, 1},
+        Case{"incline-down-mu-04", TimeScheme::implicit, .5},
+        Case{"slope-stands-meshed", TimeScheme::automatic, .4}}) {
+    INFO(name);
+    Scene scene = read_scene(kSource + "/data/scenes/" + name + ".json");
+    scene.time.scheme = scheme;
+    check_resumed(scene, end / (kSanitized ? 10 : 1), long_run() ? 20 : 3, random);
+  }
+}
