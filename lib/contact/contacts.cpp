@@ -149,6 +149,14 @@ void Contacts::add_dashpots(const Kinematics& now, const Dashpots::Motion& motio
   dashpots_.add_forces(forces);
 }
 
+void Contacts::silence_dashpots(const Kinematics& now) {
+  if (!table_.damped()) return;
+  dashpots_.clear();
+  each([&](Kernel& kernel) { kernel.add_dashpots(now, dashpots_); });
+  size_t next = 0;
+  each([&](Kernel& kernel) { kernel.keep_pushes(dashpots_, next, memory_); });
+}
+
 void Contacts::add_bend_losses(Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   const double lost = dynamics.lost_in_bend(dt);

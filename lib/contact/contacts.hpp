@@ -71,6 +71,8 @@ class Contacts {
   /// moved since the last evaluation, so that no work is booked.
   void add_dashpots(const Kinematics& now, const Dashpots::Motion& motion, double dt, bool first,
                     std::span<double> forces);
+  /// The same where dashpots do not act: they exert no force.
+  void silence_dashpots(const Kinematics& now);
 
   /// All contacts, kernel by kernel, in ascending order within each kernel. It is too slow for
   /// every step.

@@ -46,6 +46,9 @@ class ContactTerm final : public Term {
   /// Adds the forces of dashpots, when all other ones in a step of dt (s) are known; `onsets`:
   /// there are such impulses. `first`: nothing has moved since the last look.
   void add_dashpots(State& state, double dt, bool onsets, bool first);
+  void silence_dashpots(const State& state) {
+    contacts_.silence_dashpots(state.kinematics(state.v));
+  }
   /// Throws Unstable if bodies that meet have moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt);
   void watch(const State& state) override;

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lib/dynamics/contact_term.hpp"
-#include "lib/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {
@@ -17,9 +16,9 @@ constexpr std::int64_t kFirst = 2 * kWorth;
 constexpr std::int64_t kLookEvery = 64;  // ticks between looks whether to try
 constexpr std::int64_t kFirstWait = 512, kLongestWait = 1 << 16;
 constexpr double kFarthest = .2;  // of an inradius, which a step may lead over
-// Parts of an inradius: bodies that move less in a step rest, and those that move still less do so
-// by rounding alone.
-constexpr double kRest = 1e-10, kRounded = 1e-12;
+// Bodies rest that move less in a step, in parts of an inradius, with less force out of balance, in
+// parts of the forces.
+constexpr double kRest = 1e-10, kBalanced = 1e-5;
 // Forces of stiff contacts at the end of a step tell of vibrations that have not died out: a step
 // that is three times as long as the one before makes them grow (docs/theory.md, "Implicit steps").
 constexpr double kMostLonger = 2, kMostShorter = 5, kReserve = .8;
@@ -142,6 +141,7 @@ std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, s
     give_up(before_.step);
     return 0;
   }
+  if (refused_) throw Unstable(*refused_);
   throw Unstable(fmt::format(
       "Newton's method finds no places at the end of a step of {:.3g} s {}: {}", h_,
       at_time(before_),
@@ -196,6 +196,7 @@ void ImplicitSteps::follow(const State& state, double dt, const Energies& before
 bool ImplicitSteps::attempt(State& state, double time) {
   state = before_;
   state.time = time;
+  refused_.reset();
   for (size_t c = 0; c < base_.size(); ++c) state.v[c] += h_ / 2 * acceleration_[c];
   moves_.steer(state, h_);
   moves_.drift(state, h_);
@@ -208,7 +209,8 @@ bool ImplicitSteps::attempt(State& state, double time) {
   try {
     if (contact_) contact_->check_drift(state, h_);
     return equilibrium_.step(state, before_, base_, h_);
-  } catch (const Unstable&) {
+  } catch (const Unstable& error) {
+    refused_ = error;
     return false;
   }
 }
@@ -235,20 +237,31 @@ double ImplicitSteps::farthest(const State& state) const {
   return farthest;
 }
 
+// Whether the forces at the end of the step are as good as in balance.
+bool ImplicitSteps::is_balanced(const State& state) const {
+  double off = 0, all = 0;
+  for (size_t c = 0; c < base_.size(); ++c) {
+    if (!dofs_.can_move(c)) continue;
+    const double weight = dofs_.weight().empty() ? 0 : dofs_.weight()[c];
+    const double f = state.f[c] + weight;
+    off += f * f * dofs_.inverse_mass()[c];
+    all += (state.f[c] * state.f[c] + weight * weight) * dofs_.inverse_mass()[c];
+  }
+  return off < kBalanced * kBalanced * all;
+}
+
 // Forces are known to the rounding of places only. Where everything rests, velocities that followed
-// them would never die out: they follow the places.
+// them would never die out: they are 0.
 const State& ImplicitSteps::finish(State& state) {
   const std::vector<double> half = middle_.v;
   const double way = farthest(state);
-  rests_ = way <= kRest;
-  stays_ = way == 0;
-  const double rate = way <= kRounded ? 0 : 1 / h_;
+  rests_ = way <= kRest && is_balanced(state);
+  stays_ = way == 0 && state.f == before_.f;
   middle_ = state;
   for (size_t c = 0; c < base_.size(); ++c) {
     const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
     const double a = dofs_.inverse_mass()[c] * state.f[c] + gravity;
-    middle_.v[c] = rests_ && dofs_.can_move(c) ? (state.x[c] - before_.x[c]) * rate
-                                               : half[c] + h_ * (a - acceleration_[c]);
+    middle_.v[c] = rests_ && dofs_.can_move(c) ? 0 : half[c] + h_ * (a - acceleration_[c]);
     middle_.x[c] = (before_.x[c] + state.x[c]) / 2;
     state.v[c] = middle_.v[c] + (rests_ ? 0 : h_ / 2 * a);
   }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lib/archive/archive.hpp"
@@ -15,6 +16,7 @@
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/step_control.hpp"
 #include "lib/dynamics/term.hpp"
+#include "lib/dynamics/unstable.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
 
@@ -68,6 +70,7 @@ class ImplicitSteps {
   bool attempt(State& state, double time);
   [[nodiscard]] double error() const;
   [[nodiscard]] double farthest(const State& state) const;
+  [[nodiscard]] bool is_balanced(const State& state) const;
   [[nodiscard]] bool is_quiet(const State& state, double dt) const;
   void balance_spins(State& state) const;
   void give_up(std::int64_t step);
@@ -85,7 +88,7 @@ class ImplicitSteps {
   std::int64_t ticks_ = 1;
   bool running_ = false;         // the last step was an implicit one
   bool rests_ = false;           // what has moved in it is hardly more than rounding
-  bool stays_ = false;           // nothing at all has moved
+  bool stays_ = false;           // nothing has moved at all, and no force has changed
   std::int64_t next_try_ = 0;    // number of the step from which on another try is made
   std::int64_t wait_;            // steps between tries
   std::int64_t phase_from_ = 0;  // number of the step at which this phase has begun
@@ -94,6 +97,7 @@ class ImplicitSteps {
   bool begins_ = false;                   // this phase
   double loss_from_ = 0, work_from_ = 0;  // at the start of this phase, J
   ImplicitCounts counts_;
+  std::optional<Unstable> refused_;  // why the last step that was tried did not do, if it is known
   // Of the step that is tried.
   State before_, middle_;
   std::vector<double> acceleration_, base_;  // at its start, m/s^2; see Equilibrium::step

@@ -106,7 +106,7 @@ bool Equilibrium::find_step(State& state, const NewtonPath& path, bool first) {
     const size_t c = 3 * static_cast<size_t>(body);
     step_[c] = along.dot(Vec2(step_[c], step_[c + 1]));
   }
-  if (!solver_.factorise(tangent_, free_, shift_)) return false;
+  if (!solver_.factorise(tangent_, first_, free_, shift_)) return false;
   solver_.solve(step_, step_);
   for (const auto& [body, along] : rails_) {
     const size_t c = 3 * static_cast<size_t>(body);
@@ -315,7 +315,7 @@ int Equilibrium::negative_pivots(const State& state) {
   std::ranges::fill(shift_, 0.);
   if (!find_tangent(state)) return -1;
   put_on_rails();
-  if (!solver_.factorise(tangent_, free_, shift_)) return -1;
+  if (!solver_.factorise(tangent_, first_, free_, shift_)) return -1;
   return solver_.negative_pivots(kPivotNoise);
 }
 

@@ -177,6 +177,7 @@ bool Simulation::take_implicit_step(double horizon) {
   }
   control_->advance(state_, ticks);
   find_forces(state_.v, 0, 0, true);
+  if (contact_) contact_->silence_dashpots(state_);
   const State& middle = implicit_->finish(state_);
   const double h = implicit_->length();
   for (const auto& term : terms_) term->book(middle, h, ledger_);

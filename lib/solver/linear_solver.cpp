@@ -1,14 +1,14 @@
 #include "lib/solver/linear_solver.hpp"
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "lib/solver/block_factors.hpp"
 
 namespace apothem {
 namespace {
-
-using Matrix = Eigen::SparseMatrix<double>;
 
 // Entries that differ from those across the diagonal by less are round-off of symmetric sums.
 constexpr double kSkew = 1e-12;
@@ -16,32 +16,64 @@ constexpr double kSkew = 1e-12;
 }  // namespace
 
 struct LinearSolver::Factors {
-  // Of each coordinate its number in the system, or -1.
-  std::vector<int> number;
-  int size = 0;
-  // Places of the entries, as they came, and of each the number of its sum in `matrix`, or -1.
-  // After them those of the diagonal.
+  // A coordinate as one of a block.
+  struct Slot {
+    int block = -1;  // -1: it is not in the system
+    int offset = 0;
+  };
+  std::vector<Slot> slots;
+  // Those of blocks that have no coordinate of the system: they get an equation of their own.
+  std::vector<Slot> spare;
+  std::vector<std::uint8_t> moved;
+  size_t bodies = 0;  // coordinates of rigid bodies
+  int size = 0;       // blocks
+  // Places of the entries, as they came, and where they are summed, or null; likewise of D.
   std::vector<std::pair<std::int32_t, std::int32_t>> places;
-  std::vector<int> sum_of;
-  std::vector<int> diagonal_of;
-  std::vector<int> across;  // of each sum that of the transposed place, or -1
-  Matrix matrix;
-  bool symmetric = true;
-  bool analysed_ldlt = false, analysed_lu = false;
-  Eigen::SimplicialLDLT<Matrix> ldlt;
-  Eigen::SparseLU<Matrix> lu;
-  Eigen::VectorXd right, left;
+  std::vector<double*> sum_of, diagonal_of, spare_of;
+  bool symmetric = true, points = false;
+  BlockFactors<3> of_bodies;  // of scenes without nodes
+  BlockFactors<2> of_points;  // of others, where the angle of a body is a block of its own
+  std::vector<double> parts;
 
-  void number_coordinates(std::span<const std::uint8_t> moves) {
-    std::vector<int> now(moves.size(), -1);
-    int next = 0;
-    for (size_t c = 0; c < moves.size(); ++c) {
-      if (moves[c]) now[c] = next++;
-    }
-    if (now == number) return;
-    number = std::move(now);
-    size = next;
+  template <class F>
+  decltype(auto) use(const F& f) {
+    return points ? f(of_points) : f(of_bodies);
+  }
+  [[nodiscard]] int breadth() const { return points ? 2 : 3; }
+
+  // Numbers the blocks that have a coordinate of the system.
+  void number(std::span<const std::uint8_t> moves, size_t rigid) {
+    if (std::ranges::equal(moves, moved) && rigid == bodies) return;
+    moved.assign(moves.begin(), moves.end());
+    bodies = rigid;
+    points = moves.size() > rigid;
     places.clear();
+    slots.assign(moves.size(), {});
+    spare.clear();
+    size = 0;
+    for (size_t c = 0; c < moves.size();) {
+      const bool angle = points && c < rigid && c % 3 == 2;
+      const size_t count = angle ? 1 : points ? 2 : 3;
+      number_block(c, count);
+      c += count;
+    }
+    parts.resize(static_cast<size_t>(size * breadth()));
+  }
+  void number_block(size_t first, size_t count) {
+    const auto moves = [&](size_t i) { return i < count && moved[first + i] != 0; };
+    const auto breadth_now = static_cast<size_t>(breadth());
+    bool any = false;
+    for (size_t i = 0; i < count; ++i) any = any || moves(i);
+    if (!any) return;
+    for (size_t i = 0; i < breadth_now; ++i) {
+      const Slot slot{size, static_cast<int>(i)};
+      if (moves(i)) {
+        slots[first + i] = slot;
+      } else {
+        spare.push_back(slot);
+      }
+    }
+    ++size;
   }
   [[nodiscard]] bool same_places(std::span<const Tangent::Entry> entries) const {
     return entries.size() == places.size() &&
@@ -50,110 +82,91 @@ struct LinearSolver::Factors {
                         return e.row == place.first && e.column == place.second;
                       });
   }
-  void find_places(std::span<const Tangent::Entry> entries) {
+  template <class Blocks>
+  void find_places(Blocks& blocks, std::span<const Tangent::Entry> entries) {
+    std::vector<std::pair<int, int>> pairs;
     places.clear();
-    places.reserve(entries.size());
-    std::vector<Eigen::Triplet<double>> all;
-    all.reserve(entries.size() + static_cast<size_t>(size));
     for (const Tangent::Entry& e : entries) {
       places.emplace_back(e.row, e.column);
-      const int row = number[static_cast<size_t>(e.row)];
-      const int column = number[static_cast<size_t>(e.column)];
-      if (row >= 0 && column >= 0) all.emplace_back(row, column, 0.);
+      const int row = slots[static_cast<size_t>(e.row)].block;
+      const int column = slots[static_cast<size_t>(e.column)].block;
+      if (row >= 0 && column >= 0 && row != column) pairs.emplace_back(row, column);
     }
-    for (int i = 0; i < size; ++i) all.emplace_back(i, i, 0.);
-    matrix.resize(size, size);
-    matrix.setFromTriplets(all.begin(), all.end());
-    matrix.makeCompressed();
-    const auto sum_at = [&](int row, int column) {
-      const int* const first = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column];
-      const int* const last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
-      return static_cast<int>(std::lower_bound(first, last, row) - matrix.innerIndexPtr());
+    blocks.analyse(size, std::move(pairs));
+    const auto sum_at = [&](const Slot& row, const Slot& column) -> double* {
+      if (row.block < 0 || column.block < 0) return nullptr;
+      return &blocks.at(row.block, column.block)(row.offset, column.offset);
     };
     sum_of.clear();
-    sum_of.reserve(entries.size());
     for (const Tangent::Entry& e : entries) {
-      const int row = number[static_cast<size_t>(e.row)];
-      const int column = number[static_cast<size_t>(e.column)];
-      sum_of.push_back(row >= 0 && column >= 0 ? sum_at(row, column) : -1);
+      sum_of.push_back(
+          sum_at(slots[static_cast<size_t>(e.row)], slots[static_cast<size_t>(e.column)]));
     }
     diagonal_of.clear();
-    for (int i = 0; i < size; ++i) diagonal_of.push_back(sum_at(i, i));
-    across.clear();
-    for (int column = 0; column < size; ++column) {
-      for (int k = matrix.outerIndexPtr()[column]; k < matrix.outerIndexPtr()[column + 1]; ++k) {
-        const int row = matrix.innerIndexPtr()[k], found = sum_at(column, row);
-        const bool there =
-            found < matrix.outerIndexPtr()[row + 1] && matrix.innerIndexPtr()[found] == column;
-        across.push_back(there ? found : -1);
-      }
-    }
-    analysed_ldlt = analysed_lu = false;
-  }
-  [[nodiscard]] bool is_symmetric() const {
-    const double* const sums = matrix.valuePtr();
-    double largest = 0, skew = 0;
-    for (size_t k = 0; k < across.size(); ++k) {
-      largest = std::max(largest, std::abs(sums[k]));
-      skew = std::max(skew, std::abs(sums[k] - (across[k] < 0 ? 0 : sums[across[k]])));
-    }
-    return skew <= kSkew * largest;
+    for (const Slot& slot : slots) diagonal_of.push_back(sum_at(slot, slot));
+    spare_of.clear();
+    for (const Slot& slot : spare) spare_of.push_back(sum_at(slot, slot));
   }
 };
 
 LinearSolver::LinearSolver() : factors_(std::make_unique<Factors>()) {}
 LinearSolver::~LinearSolver() = default;
 
-bool LinearSolver::factorise(const Tangent& tangent, std::span<const std::uint8_t> moves,
+bool LinearSolver::factorise(const Tangent& tangent, size_t rigid,
+                             std::span<const std::uint8_t> moves,
                              std::span<const double> diagonal) {
   Factors& f = *factors_;
-  f.number_coordinates(moves);
-  if (f.places.empty() || !f.same_places(tangent.entries())) f.find_places(tangent.entries());
+  f.number(moves, rigid);
   if (f.size == 0) return true;
-  double* const sums = f.matrix.valuePtr();
-  std::fill_n(sums, f.matrix.nonZeros(), 0.);
-  for (size_t i = 0; i < f.sum_of.size(); ++i) {
-    if (f.sum_of[i] >= 0) sums[f.sum_of[i]] += tangent.entries()[i].value;
-  }
-  for (size_t c = 0; c < f.number.size(); ++c) {
-    if (f.number[c] >= 0) sums[f.diagonal_of[static_cast<size_t>(f.number[c])]] += diagonal[c];
-  }
-  if (!std::all_of(sums, sums + f.matrix.nonZeros(), [](double k) { return std::isfinite(k); })) {
-    return false;
-  }
-  f.symmetric = f.is_symmetric();
-  if (f.symmetric) {
-    if (!f.analysed_ldlt) f.ldlt.analyzePattern(f.matrix);
-    f.analysed_ldlt = true;
-    f.ldlt.factorize(f.matrix);
-    return f.ldlt.info() == Eigen::Success;
-  }
-  if (!f.analysed_lu) f.lu.analyzePattern(f.matrix);
-  f.analysed_lu = true;
-  f.lu.factorize(f.matrix);
-  return f.lu.info() == Eigen::Success;
+  return f.use([&](auto& blocks) {
+    if (f.places.empty() || !f.same_places(tangent.entries())) {
+      f.find_places(blocks, tangent.entries());
+    }
+    blocks.set_zero();
+    for (size_t i = 0; i < f.sum_of.size(); ++i) {
+      if (f.sum_of[i]) *f.sum_of[i] += tangent.entries()[i].value;
+    }
+    for (size_t c = 0; c < diagonal.size(); ++c) {
+      if (f.diagonal_of[c]) *f.diagonal_of[c] += diagonal[c];
+    }
+    for (double* const one : f.spare_of) *one = 1;
+    if (!blocks.is_finite()) return false;
+    f.symmetric = blocks.is_symmetric(kSkew);
+    return blocks.factorise(f.symmetric);
+  });
 }
 
 void LinearSolver::solve(std::span<const double> b, std::span<double> x) const {
   Factors& f = *factors_;
-  f.right.resize(f.size);
-  for (size_t c = 0; c < f.number.size(); ++c) {
-    if (f.number[c] >= 0) f.right[f.number[c]] = b[c];
+  const auto part = [&](const Factors::Slot& slot) -> double& {
+    return f.parts[static_cast<size_t>(f.breadth() * slot.block + slot.offset)];
+  };
+  std::ranges::fill(f.parts, 0.);
+  for (size_t c = 0; c < f.slots.size(); ++c) {
+    if (f.slots[c].block >= 0) part(f.slots[c]) = b[c];
   }
-  if (f.size > 0 && f.symmetric) {
-    f.left = f.ldlt.solve(f.right);
-  } else if (f.size > 0) {
-    f.left = f.lu.solve(f.right);
-  }
-  for (size_t c = 0; c < f.number.size(); ++c) x[c] = f.number[c] >= 0 ? f.left[f.number[c]] : 0;
+  if (f.size > 0) f.use([&](auto& blocks) { blocks.solve(f.parts); });
+  for (size_t c = 0; c < f.slots.size(); ++c) x[c] = f.slots[c].block >= 0 ? part(f.slots[c]) : 0;
 }
 
 int LinearSolver::negative_pivots(double noise) const {
-  const Factors& f = *factors_;
+  Factors& f = *factors_;
   if (!f.symmetric) return -1;
   if (f.size == 0) return 0;
-  const Eigen::ArrayXd pivots = f.ldlt.vectorD().array();
-  return static_cast<int>((pivots < -noise * pivots.abs().maxCoeff()).count());
+  std::vector<double> pivots;
+  f.use([&](auto& blocks) {
+    blocks.each_pivot([&](const auto& d) {
+      const Eigen::MatrixXd whole = (d + d.transpose()) / 2;
+      const Eigen::VectorXd values =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(whole, Eigen::EigenvaluesOnly)
+              .eigenvalues();
+      pivots.insert(pivots.end(), values.begin(), values.end());
+    });
+  });
+  double largest = 0;
+  for (const double pivot : pivots) largest = std::max(largest, std::abs(pivot));
+  return static_cast<int>(
+      std::ranges::count_if(pivots, [&](double pivot) { return pivot < -noise * largest; }));
 }
 
 }  // namespace apothem

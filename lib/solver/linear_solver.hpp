@@ -1,6 +1,7 @@
 // Linear systems of sparse tangents: A = K + D with a diagonal D >= 0, in the coordinates that can
-// move. Symmetric ones are factorised as L D L^T, whose pivots tell stability (the number of
-// negative ones is that of negative eigenvalues, Sylvester's law of inertia); others as L U.
+// move. They are factorised in blocks (block_factors.hpp), symmetric ones as L D L^T, whose
+// pivots tell stability (the number of negative ones is that of negative eigenvalues, Sylvester's
+// law of inertia).
 #pragma once
 
 #include <memory>
@@ -20,7 +21,10 @@ class LinearSolver {
   /// Factorises A. `moves` says for each coordinate whether it belongs to the system, and
   /// `diagonal` is D. The order of elimination is kept while the places of the entries are the
   /// same. Returns false if A is singular or not finite.
-  [[nodiscard]] bool factorise(const Tangent& tangent, std::span<const std::uint8_t> moves,
+  /// `rigid`: the number of the first coordinates, which are x, y and angle of rigid bodies; the
+  /// others are x and y of nodes.
+  [[nodiscard]] bool factorise(const Tangent& tangent, size_t rigid,
+                               std::span<const std::uint8_t> moves,
                                std::span<const double> diagonal);
   /// Solves A x = b with the last factors; x is 0 in coordinates that do not belong to the system.
   void solve(std::span<const double> b, std::span<double> x) const;
