@@ -135,8 +135,13 @@ struct ClippedPair {
   [[nodiscard]] double overlap_area() const {
     const lower_envelope::Line<double> one{Vec2::Zero(), 1};
     double area = 0;
+    std::vector<Box> boxes;
+    for (const auto& part_b : parts_b) boxes.push_back(box_of(part_b.ring));
     for (const auto& part_a : parts_a) {
-      for (const auto& part_b : parts_b) {
+      const Box box = box_of(part_a.ring);
+      for (size_t i = 0; i < parts_b.size(); ++i) {
+        if (apart(box, boxes[i])) continue;
+        const auto& part_b = parts_b[i];
         area +=
             part_a.sign * part_b.sign *
             lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);
