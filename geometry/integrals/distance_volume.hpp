@@ -33,15 +33,23 @@
 
 namespace apothem {
 
+/// Where a polygon overlaps that of a field.
+struct OverlapBounds {
+  Box box;       ///< contains the overlap
+  double depth;  ///< no point of it is farther from the boundary of the field's polygon, m
+};
+
 /// Integrates a distance field over a polygon.
 template <class Real>
 class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
   /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
-  /// a coordinate is not finite, the result is NaN.
+  /// a coordinate is not finite, the result is NaN. Of a polygon of several rings, the sum may be
+  /// all that matters: then cells that do not reach into the overlap with it are left out, because
+  /// they would add nothing but round-off to the sum.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
-            const std::vector<Real>& y) {
+            const std::vector<Real>& y, const std::optional<OverlapBounds>& overlap = {}) {
     Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
     for (int i = 0; i < field.size; ++i) finite += 0 * field.x[i] + 0 * field.y[i];
     for (size_t i = 0; i < x.size(); ++i) finite += 0 * x[i] + 0 * y[i];
@@ -56,6 +64,8 @@ class DistanceVolume {
       around_.include(static_cast<double>(x[i]), static_cast<double>(y[i]));
     }
     plant_tree(field);
+    if (overlap) around_ = overlap->box;
+    depth_ = overlap ? kSure * overlap->depth + slack_ : std::numeric_limits<double>::infinity();
     Real volume = 0;
     if (outline_.size() < 3) return volume;
     for (int i = 0; i < outline_.size(); ++i) volume += edge_cell(i);
@@ -70,16 +80,16 @@ class DistanceVolume {
   // With so few edges, to look at all of them costs less than to look for those that count.
   static constexpr size_t kFew = 32;
 
-  // The tree of the ring, if it has many edges, and what round-off may do to its boxes.
+  // What round-off may do to boxes, and the tree of the ring, if it has many edges.
   void plant_tree(const PlacedDistance<Real>& field) {
     tree_.reset();
-    if (ring_.size() <= kFew) return;
     Box all = around_;
     for (int i = 0; i < field.size; ++i) {
       all.include(static_cast<double>(field.x[i]), static_cast<double>(field.y[i]));
     }
     slack_ =
         1e-14 * std::max({std::abs(all.x0), std::abs(all.x1), std::abs(all.y0), std::abs(all.y1)});
+    if (ring_.size() <= kFew) return;
     std::vector<Vec2> points;
     for (const Point& p : ring_) {
       points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y));
@@ -153,9 +163,17 @@ class DistanceVolume {
     const auto x = static_cast<double>(from.x), y = static_cast<double>(from.y);
     return dx * ((dx > 0 ? box.x1 : box.x0) - x) + dy * ((dy > 0 ? box.y1 : box.y0) - y);
   }
-  // The same of the ring's box.
+  // The same of the box around what counts.
   [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
     return ahead(direction, from, around_);
+  }
+  // Whether all points around which something counts are farther from a feature, which lies in the
+  // box of two points, than they are from the boundary.
+  [[nodiscard]] bool too_far(const Point& p, const Point& q) const {
+    const auto vec = [](const Point& r) {
+      return Vec2(static_cast<double>(r.x), static_cast<double>(r.y));
+    };
+    return apart(box_of(vec(p), vec(q)).grown(depth_), around_);
   }
   // Whether a box is beyond the ceiling of a cell, in a direction from a point.
   [[nodiscard]] bool beyond_ceiling(const Point& direction, const Point& from,
@@ -220,6 +238,7 @@ class DistanceVolume {
     const Point& start = outline_.vertex(i);
     const Point& stop = outline_.vertex(outline_.after(i));
     const Real& length = outline_.length(i);
+    if (too_far(start, stop)) return 0;
     if (ahead(t, start) < 0 || ahead(n, start) < 0 || ahead(t * Real(-1), stop) < 0) return 0;
     const auto height = [&](size_t k) {
       const Quadratic& f = ceiling_[k].function;
@@ -302,6 +321,7 @@ class DistanceVolume {
   // theta is the angle from the middle direction of the cell.
   Real vertex_cell(int v) {
     const Point& corner = outline_.vertex(v);
+    if (too_far(corner, corner)) return 0;
     const int before = outline_.before(v);
     const Point& left = outline_.normal(before);
     const Point& right = outline_.normal(v);
@@ -538,9 +558,10 @@ class DistanceVolume {
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
-  Box around_;                                 // the ring
+  Box around_;                                 // the ring, or what is asked for of its inside
   std::optional<RingTree> tree_;               // of the ring, if it has many edges
-  double slack_ = 0;                           // round-off of positions in the tree's boxes, m
+  double slack_ = 0;                           // round-off of positions in boxes, m
+  double depth_ = 0;                           // no point that counts is deeper, m
   std::vector<int> near_edges_, near_reflex_;  // of the present cell
   Real highest_{};                             // no more than this is the ceiling's distance
   std::vector<Real> cuts_;
