@@ -372,6 +372,11 @@ class DistanceVolume {
     // A segment that leads straight to the vertex has no width there, so its terms may all be 0,
     // but the winding number of a ring through the vertex does not tell which part it covers.
     if (inside || sums.high_size > 0) return sums.low;
+    return coverage * whole_vertex_cell();
+  }
+
+  // Volume over all of the present vertex's cell.
+  Real whole_vertex_cell() {
     Real whole = 0;
     for (size_t k = 0; k < ceiling_.size(); ++k) {
       if (!ceiling_[k].known) continue;
@@ -380,7 +385,7 @@ class DistanceVolume {
       add_cap_cuts(ceiling_[k].function, 1);
       between_cuts([&](const Real& a, const Real& b) { whole += sector(reach, a, b); });
     }
-    return coverage * whole;
+    return whole;
   }
 
   // Components of a vector along the middle direction and to its left.
