@@ -123,7 +123,7 @@ struct MeshOptions {
   std::string file;   ///< file of a region, or of a mesh (.msh)
   bool make = false;  ///< cut the region into Voronoi cells
   VoronoiOptions voronoi;
-  std::string output;  ///< file for the cells; empty: standard output
+  std::string output;  ///< file for the cells, by its ending; empty: standard output
   std::string vtk;     ///< file for VTK; empty: none
   bool json = false;   ///< describe a mesh in JSON instead of a table
 };

@@ -132,7 +132,7 @@ class Reference:
             return "`{ " + ", ".join(f'"{k}"' for k in node["properties"]) + " }`: " + ", ".join(inner)
         if kind in ("number", "integer"):
             return ("number" if kind == "number" else "whole number") + self.bounds(node)
-        return {"string": "text"}.get(kind, "not allowed")
+        return {"string": "text", "boolean": "`true` or `false`"}.get(kind, "not allowed")
 
     def list_of(self, node, pointer):
         items, inner = node["items"], pointer + "/items"

@@ -216,7 +216,9 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   CLI::Option* b = add(sub, "B", o.b, "FILE", "The other polygon");
   a->needs(b);
   CLI::Option* batch =
-      sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
+      sub->add_option(
+             "--batch", o.batch,
+             "File with one pair per line: name n x y ... m x y ..., or POLYGON ((x y, ...))")
           ->type_name("FILE")
           ->excludes(a)
           ->excludes(b);
@@ -286,7 +288,8 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
       ->capture_default_str();
   sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
   add(sub, "-o,--output", o.output, "FILE",
-      "JSON file (default: standard output for Voronoi cells, none for a mesh)");
+      "File for the cells: .json for points and cells, .wkt, .geojson, .svg or .vtu for polygons "
+      "(default: JSON on standard output for Voronoi cells, none for a mesh)");
   add(sub, "--vtk", o.vtk, "FILE", "VTK file (.vtu) to look at");
   sub->final_callback([&o, cells] { o.make = cells->count() > 0; });
 }
@@ -296,7 +299,8 @@ void add_polygon(CLI::App& app, PolygonOptions& o) {
   CLI::Option* file =
       add(sub, "FILE", o.file, "FILE", "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}");
   CLI::Option* batch =
-      add(sub, "--batch", o.batch, "FILE", "File with one ring per line: name n x y ...")
+      add(sub, "--batch", o.batch, "FILE",
+          "File with one polygon per line: name n x y ..., or name POLYGON ((x y, ...))")
           ->excludes(file);
   add(sub, "--reference", o.reference, "REFERENCE", "roof, inscribed_circle or a length in m")
       ->capture_default_str();

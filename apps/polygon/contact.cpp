@@ -82,30 +82,28 @@ void print_table(const Json& list) {
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a wrong option is reported once, not for each line
   return print_answers(options.batch, kPairForm, [&](const BatchLine& line) -> BatchAnswer {
-    const Json name = line.has_count ? Json(line.name) : Json();
+    const Json name = line.has_polygon ? Json(line.name) : Json();
     Json object{{"name", name}};
     BatchAnswer answer;
-    const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
-      object = {{"name", name},
-                {"error", reason},
-                {"polygon", which},
-                {"vertex", vertex},
-                {"line", line.number}};
+    const auto refuse = [&](const InvalidPolygon& error, const std::string& which) {
+      object = {{"name", name}, {"error", error.what()}, {"polygon", which}};
+      if (error.hole()) object["hole"] = *error.hole();
+      object.update({{"vertex", error.vertex()}, {"line", line.number}});
       answer.refused = true;
     };
     const char* which = "a";
     try {
       const PolygonPair pair = parse_pair(line.text);
-      const Polygon a(pair.a);
+      const Polygon a(pair.a.outer, pair.a.holes);
       which = "b";
-      const Polygon b(pair.b);
+      const Polygon b(pair.b.outer, pair.b.holes);
       which = "";
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
     } catch (const BadPairLine& error) {
-      refuse(error.what(), error.polygon(), error.vertex());
+      refuse(error, error.polygon());
     } catch (const InvalidPolygon& error) {
-      refuse(error.what(), which, error.vertex());
+      refuse(error, which);
     }
     answer.text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
     return answer;

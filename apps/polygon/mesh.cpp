@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "apps/commands.hpp"
+#include "apps/polygon/input.hpp"
 #include "geometry/meshing/cell_shapes.hpp"
 #include "lib/mesh/boundary.hpp"
 #include "lib/mesh/fill_mesh.hpp"
@@ -14,6 +15,7 @@
 #include "lib/scene/mesh_file.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/text/error.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -148,6 +150,27 @@ std::string groups_json(const Mesh& mesh) {
   return "[\n" + text + "\n]";
 }
 
+// The cells as polygons of a file of shapes.
+std::vector<Shape> cell_polygons(const PolygonMesh& mesh) {
+  std::vector<Shape> shapes;
+  for (const std::vector<int>& cell : mesh.cells) {
+    const auto number = static_cast<double>(shapes.size());
+    shapes.push_back({Shape::Kind::polygon, {cell_ring(mesh, cell)}, {{"cell", number}}});
+  }
+  return shapes;
+}
+
+bool ends_in_json(const std::string& file) { return lower_case(file).ends_with(".json"); }
+
+// Writes the cells in the format that the ending of the file stands for; `json` is the text of
+// the mesh for .json.
+void write_cells(const std::string& file, const PolygonMesh& mesh, const std::string& json) {
+  if (ends_in_json(file)) return write_file(file, json);
+  const ShapeFormat format = *shape_format(file);
+  if (format == ShapeFormat::vtu) return write_mesh(file, mesh);
+  write_file(file, shape_text(cell_polygons(mesh), format));
+}
+
 void make_cells(const MeshOptions& options) {
   try {
     const Polygon region = polygon_of_file(options.file);
@@ -160,7 +183,7 @@ void make_cells(const MeshOptions& options) {
     const std::string json =
         fmt::format("{{\n\"region\": {},\n{}\"points\": {},\n\"cells\": {}\n}}\n", rows(rings[0]),
                     holes, rows(mesh.points), rows(mesh.cells));
-    if (!options.output.empty()) write_file(options.output, json);
+    if (!options.output.empty()) write_cells(options.output, mesh, json);
     if (!options.vtk.empty()) write_mesh(options.vtk, mesh);
     if (options.output.empty()) fmt::print("{}", json);
     fmt::print(options.output.empty() ? stderr : stdout, "{}", summary(region, voronoi, mesh));
@@ -175,20 +198,31 @@ void describe_mesh(const MeshOptions& options) {
   const Mesh mesh = read_mesh_file(options.file, {.convex_quadrilaterals = false});
   const PolygonMesh cells = cells_of_mesh(mesh);
   if (!options.output.empty()) {
-    write_file(options.output,
-               fmt::format("{{\n\"points\": {},\n\"cells\": {},\n\"groups\": {}\n}}\n",
-                           rows(cells.points), rows(cells.cells), groups_json(mesh)));
+    write_cells(options.output, cells,
+                fmt::format("{{\n\"points\": {},\n\"cells\": {},\n\"groups\": {}\n}}\n",
+                            rows(cells.points), rows(cells.cells), groups_json(mesh)));
   }
   if (!options.vtk.empty()) write_mesh(options.vtk, cells);
   fmt::print("{}", options.json ? description_json(mesh).dump(2) + "\n" : description(mesh));
+}
+
+void require_endings(const MeshOptions& options) {
+  const std::string& file = options.output;
+  if (!file.empty() && !ends_in_json(file) && !shape_format(file)) {
+    throw UsageError("-o", fmt::format("must end in .json, {}, not \"{}\"", kShapeFormats, file));
+  }
+  if (!options.vtk.empty() && shape_format(options.vtk) != ShapeFormat::vtu) {
+    throw UsageError("--vtk", fmt::format("must end in .vtu, not \"{}\"", options.vtk));
+  }
 }
 
 }  // namespace
 
 int mesh_command(const MeshOptions& options) {
   if (!options.output.empty() && options.output == options.vtk) {
-    throw SceneError(options.vtk, 0, "", "is given for JSON and for VTK; give two names");
+    throw SceneError(options.vtk, 0, "", "is given for -o and for --vtk; give two names");
   }
+  require_endings(options);
   if (is_mesh_file(options.file)) {
     if (options.make) {
       throw SceneError(options.file, 0, "", "is a mesh already; leave out --voronoi");

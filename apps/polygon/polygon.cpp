@@ -178,19 +178,18 @@ void print_table(const Analysis& a, const std::string& reference_name) {
                                 a.skeleton.attempts == 1 ? "" : "s"));
 }
 
-constexpr const char* kRingForm = "name n x y ...";
-
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {
-  return print_answers(options.batch, kRingForm, [&](const BatchLine& line) -> BatchAnswer {
-    const Json name = line.has_count ? Json(line.name) : Json();
+  return print_answers(options.batch, kPolygonForm, [&](const BatchLine& line) -> BatchAnswer {
+    const Json name = line.has_polygon ? Json(line.name) : Json();
     Json object{{"name", name}};
     try {
       std::istringstream words(line.text.substr(line.text.find(line.name) + line.name.size()));
-      std::vector<Vec2> ring = read_ring(words);
+      const PolygonWithHoles read = read_line_polygon(words);
       require_end(words);
-      object.update(to_json(analyse(Polygon(std::move(ring)), choice)));
+      object.update(to_json(analyse(Polygon(read.outer, read.holes), choice)));
     } catch (const InvalidPolygon& error) {
       object.update({{"error", error.what()}, {"vertex", error.vertex()}, {"line", line.number}});
+      if (error.hole()) object["hole"] = *error.hole();
       return {text(object, -1), true};
     }
     return {text(object, -1)};

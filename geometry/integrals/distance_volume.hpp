@@ -11,22 +11,33 @@
 // cells tile the polygon. A circle of radius H that touches an edge reaches no further than 2 H
 // from it, so that only features near an edge bound its cell. The integral is, cell by cell, a
 // signed sum over the edges of the other polygon: each edge contributes the volume between itself
-// and the foot of the cell, clamped to the cell.
+// and the foot of the cell, clamped to the cell. Edges beside the cell contribute nothing. Of edges
+// in a row that are all behind the cell's far end, or all in front of its foot, the sum is that of
+// one line from the first point to the last one. So a tree of boxes finds the few edges that count
+// one by one.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geometry/integrals/distance_outline.hpp"
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/potential/piecewise_minimum.hpp"
 #include "geometry/potential/quadratic.hpp"
+#include "geometry/spatial/ring_tree.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
+
+/// Where a polygon overlaps that of a field.
+struct OverlapBounds {
+  Box box;       ///< contains the overlap
+  double depth;  ///< no point of it is farther from the boundary of the field's polygon, m
+};
 
 /// Integrates a distance field over a polygon.
 template <class Real>
@@ -34,9 +45,11 @@ class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
   /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
-  /// a coordinate is not finite, the result is NaN.
+  /// a coordinate is not finite, the result is NaN. Of a polygon of several rings, the sum may be
+  /// all that matters: then cells that do not reach into the overlap with it are left out, because
+  /// they would add nothing but round-off to the sum.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
-            const std::vector<Real>& y) {
+            const std::vector<Real>& y, const std::optional<OverlapBounds>& overlap = {}) {
     Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
     for (int i = 0; i < field.size; ++i) finite += 0 * field.x[i] + 0 * field.y[i];
     for (size_t i = 0; i < x.size(); ++i) finite += 0 * x[i] + 0 * y[i];
@@ -50,6 +63,9 @@ class DistanceVolume {
       ring_.push_back({x[i], y[i]});
       around_.include(static_cast<double>(x[i]), static_cast<double>(y[i]));
     }
+    plant_tree(field);
+    if (overlap) around_ = overlap->box;
+    depth_ = overlap ? kSure * overlap->depth + slack_ : std::numeric_limits<double>::infinity();
     Real volume = 0;
     if (outline_.size() < 3) return volume;
     for (int i = 0; i < outline_.size(); ++i) volume += edge_cell(i);
@@ -60,6 +76,36 @@ class DistanceVolume {
  private:
   using Point = PlanePoint<Real>;
   using Quadratic = apothem::Quadratic<Real>;
+
+  // With so few edges, to look at all of them costs less than to look for those that count.
+  static constexpr size_t kFew = 32;
+
+  // What round-off may do to boxes, and the tree of the ring, if it has many edges.
+  void plant_tree(const PlacedDistance<Real>& field) {
+    tree_.reset();
+    Box all = around_;
+    for (int i = 0; i < field.size; ++i) {
+      all.include(static_cast<double>(field.x[i]), static_cast<double>(field.y[i]));
+    }
+    slack_ =
+        1e-14 * std::max({std::abs(all.x0), std::abs(all.x1), std::abs(all.y0), std::abs(all.y1)});
+    if (ring_.size() <= kFew) return;
+    std::vector<Vec2> points;
+    for (const Point& p : ring_) {
+      points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y));
+    }
+    tree_.emplace(std::move(points));
+  }
+
+  // Calls f(p, q) for the edges of the ring, or for the lines that judge() lets stand for them.
+  template <class Judge, class F>
+  void each_line(const Judge& judge, const F& f) const {
+    if (tree_) {
+      tree_->each_line(judge, [&](size_t i, size_t j) { f(ring_[i], ring_[j]); });
+    } else {
+      for (size_t k = 0; k < ring_.size(); ++k) f(ring_[k], after(ring_, k));
+    }
+  }
 
   // More than one by far more than round-off.
   static constexpr double kSure = 1 + 1e-9;
@@ -110,13 +156,29 @@ class DistanceVolume {
     return (b - a) / 18 * (5 * f(middle - step) + 8 * f(middle) + 5 * f(middle + step));
   }
 
-  // The largest value of the dot product of a direction with a point of the ring's box, seen from a
-  // point. Where it is negative the ring is behind a line.
-  [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
+  // The largest value of the dot product of a direction with a point of a box, seen from a point.
+  // Where it is negative the box is behind a line.
+  static double ahead(const Point& direction, const Point& from, const Box& box) {
     const auto dx = static_cast<double>(direction.x), dy = static_cast<double>(direction.y);
     const auto x = static_cast<double>(from.x), y = static_cast<double>(from.y);
-    return dx * ((dx > 0 ? around_.x1 : around_.x0) - x) +
-           dy * ((dy > 0 ? around_.y1 : around_.y0) - y);
+    return dx * ((dx > 0 ? box.x1 : box.x0) - x) + dy * ((dy > 0 ? box.y1 : box.y0) - y);
+  }
+  // The same of the box around what counts.
+  [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
+    return ahead(direction, from, around_);
+  }
+  // Whether all points around which something counts are farther from a feature, which lies in the
+  // box of two points, than they are from the boundary.
+  [[nodiscard]] bool too_far(const Point& p, const Point& q) const {
+    const auto vec = [](const Point& r) {
+      return Vec2(static_cast<double>(r.x), static_cast<double>(r.y));
+    };
+    return apart(box_of(vec(p), vec(q)).grown(depth_), around_);
+  }
+  // Whether a box is beyond the ceiling of a cell, in a direction from a point.
+  [[nodiscard]] bool beyond_ceiling(const Point& direction, const Point& from,
+                                    const Box& box) const {
+    return -ahead(direction * Real(-1), from, box) > kSure * static_cast<double>(highest_) + slack_;
   }
 
   // Makes the ceiling of a cell from the features near the segment from p to q. fill() puts those
@@ -176,6 +238,7 @@ class DistanceVolume {
     const Point& start = outline_.vertex(i);
     const Point& stop = outline_.vertex(outline_.after(i));
     const Real& length = outline_.length(i);
+    if (too_far(start, stop)) return 0;
     if (ahead(t, start) < 0 || ahead(n, start) < 0 || ahead(t * Real(-1), stop) < 0) return 0;
     const auto height = [&](size_t k) {
       const Quadratic& f = ceiling_[k].function;
@@ -201,11 +264,17 @@ class DistanceVolume {
     };
     raise_ceiling(start, stop, length, fill, height);
     Sums sums;
-    for (size_t k = 0; k < ring_.size(); ++k) {
-      const Point p = ring_[k] - start;
-      const Point q = after(ring_, k) - start;
+    const auto judge = [&](const Box& box) {
+      if (ahead(t, start, box) < -slack_ || ahead(t * Real(-1), stop, box) < -slack_) {
+        return RunUse::none;
+      }
+      const bool one = ahead(n, start, box) < -slack_ || beyond_ceiling(n, start, box);
+      return one ? RunUse::whole : RunUse::edges;
+    };
+    each_line(judge, [&](const Point& from, const Point& to) {
+      const Point p = from - start, q = to - start;
       under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length, sums);
-    }
+    });
     return sums.low_size <= sums.high_size ? sums.low : sums.high;
   }
 
@@ -252,11 +321,13 @@ class DistanceVolume {
   // theta is the angle from the middle direction of the cell.
   Real vertex_cell(int v) {
     const Point& corner = outline_.vertex(v);
+    if (too_far(corner, corner)) return 0;
     const int before = outline_.before(v);
     const Point& left = outline_.normal(before);
     const Point& right = outline_.normal(v);
     // The cell is between the normals, on the left of one and on the right of the other.
-    if (ahead({-right.y, right.x}, corner) < 0 || ahead({left.y, -left.x}, corner) < 0) return 0;
+    const Point past_right{-right.y, right.x}, past_left{left.y, -left.x};
+    if (ahead(past_right, corner) < 0 || ahead(past_left, corner) < 0) return 0;
     const Point middle =
         dot(left, right) >= 0 ? left + right : outline_.tangent(before) - outline_.tangent(v);
     using std::sqrt;
@@ -283,19 +354,29 @@ class DistanceVolume {
     Sums sums;
     Real coverage = 0;    // winding number of the ring about the vertex, in the middle direction
     bool inside = false;  // whether the ring has a vertex inside the cell or enters it sideways
-    for (size_t k = 0; k < ring_.size(); ++k) {
-      Point p = ring_[k] - corner;
-      Point q = after(ring_, k) - corner;
-      if (!clip(p, q, cross(right, p), cross(right, q))) continue;
-      if (!clip(p, q, cross(p, left), cross(q, left))) continue;
+    const auto judge = [&](const Box& box) {
+      if (ahead(past_right, corner, box) < -slack_ || ahead(past_left, corner, box) < -slack_) {
+        return RunUse::none;
+      }
+      return beyond_ceiling(axis_, corner, box) ? RunUse::whole : RunUse::edges;
+    };
+    each_line(judge, [&](const Point& from, const Point& to) {
+      Point p = from - corner, q = to - corner;
+      if (!clip(p, q, cross(right, p), cross(right, q))) return;
+      if (!clip(p, q, cross(p, left), cross(q, left))) return;
       p = in_frame(p), q = in_frame(q);
       inside = inside || in_cell(p) || in_cell(q);
       beyond_segment(p, q, sums, coverage);
-    }
+    });
     // Near the vertex, directions consist of round-off, which only the sum from the foot tolerates.
     // A segment that leads straight to the vertex has no width there, so its terms may all be 0,
     // but the winding number of a ring through the vertex does not tell which part it covers.
     if (inside || sums.high_size > 0) return sums.low;
+    return coverage * whole_vertex_cell();
+  }
+
+  // Volume over all of the present vertex's cell.
+  Real whole_vertex_cell() {
     Real whole = 0;
     for (size_t k = 0; k < ceiling_.size(); ++k) {
       if (!ceiling_[k].known) continue;
@@ -304,7 +385,7 @@ class DistanceVolume {
       add_cap_cuts(ceiling_[k].function, 1);
       between_cuts([&](const Real& a, const Real& b) { whole += sector(reach, a, b); });
     }
-    return coverage * whole;
+    return whole;
   }
 
   // Components of a vector along the middle direction and to its left.
@@ -482,7 +563,10 @@ class DistanceVolume {
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
-  Box around_;                                 // the ring
+  Box around_;                                 // the ring, or what is asked for of its inside
+  std::optional<RingTree> tree_;               // of the ring, if it has many edges
+  double slack_ = 0;                           // round-off of positions in boxes, m
+  double depth_ = 0;                           // no point that counts is deeper, m
   std::vector<int> near_edges_, near_reflex_;  // of the present cell
   Real highest_{};                             // no more than this is the ceiling's distance
   std::vector<Real> cuts_;

@@ -1,7 +1,9 @@
 #include "geometry/integrals/edge_integral.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "geometry/integrals/distance_volume.hpp"
 #include "geometry/integrals/edge_trace.hpp"
@@ -98,10 +100,77 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
   return volume;
 }
 
+struct BoxedEdge {
+  int index;
+  Box box;
+};
+
+// The edges of a polygon moved by `shift` whose boxes meet `reach`.
+std::vector<BoxedEdge> edges_in(const PlacedPotential& p, const Vec2& shift, const Box& reach) {
+  std::vector<BoxedEdge> edges;
+  for (int e = 0; e < p.size; ++e) {
+    const int end = p.end(e);
+    const Box box = box_of(Vec2(p.x[e], p.y[e]) + shift, Vec2(p.x[end], p.y[end]) + shift);
+    if (!apart(box, reach)) edges.push_back({e, box});
+  }
+  return edges;
+}
+
+// Extends a box by the edges of p that may be part of the boundary of its overlap with another
+// polygon, as far as they are in `reach`: those near an edge of the other polygon, and those inside
+// it. An edge that follows one away from all edges of the other is on the same side of these.
+// Returns whether an edge has been seen to lie outside the other polygon.
+template <class Inside>
+bool include_edges(const PlacedPotential& p, const std::vector<BoxedEdge>& edges,
+                   const std::vector<BoxedEdge>& others, const Box& reach, const Inside& inside,
+                   Box& box) {
+  int away = -1;  // start of the edge behind the last one that is away from all others
+  bool is_inside = false, any_outside = static_cast<int>(edges.size()) < p.size;
+  for (const BoxedEdge& edge : edges) {
+    const bool near = std::ranges::any_of(
+        others, [&](const BoxedEdge& other) { return !apart(edge.box, other.box); });
+    if (!near && away != edge.index) is_inside = inside(edge.index);
+    away = near ? -1 : p.end(edge.index);
+    if (!near && !is_inside) any_outside = true;
+    if (!near && !is_inside) continue;
+    box.include(std::max(edge.box.x0, reach.x0), std::max(edge.box.y0, reach.y0));
+    box.include(std::min(edge.box.x1, reach.x1), std::min(edge.box.y1, reach.y1));
+  }
+  return any_outside;
+}
+
+// Bounds of the overlap of p with q, which is moved by `shift`. Both have finite coordinates. If q
+// is partly outside p, each component of the overlap has a part of p's boundary, so that no point
+// of it is deeper than the box around it is long.
+OverlapBounds overlap_bounds(const PlacedPotential& p, const PlacedPotential& q,
+                             const Vec2& shift) {
+  const Box of_p = box_of(p, Vec2::Zero()), of_q = box_of(q, shift);
+  const double slack = kFarAway * std::max(of_p.extent(), of_q.extent());
+  const Box reach = Box{std::max(of_p.x0, of_q.x0), std::max(of_p.y0, of_q.y0),
+                        std::min(of_p.x1, of_q.x1), std::min(of_p.y1, of_q.y1)}
+                        .grown(slack);
+  Box box;
+  if (!(reach.x0 <= reach.x1 && reach.y0 <= reach.y1)) return {box, 0};
+  std::vector<BoxedEdge> edges_p = edges_in(p, Vec2::Zero(), reach);
+  const std::vector<BoxedEdge> edges_q = edges_in(q, shift, reach);
+  for (BoxedEdge& edge : edges_p) edge.box = edge.box.grown(slack);
+  const auto in_q = [&](int e) { return encloses(q, shift, {p.x[e], p.y[e]}); };
+  const auto in_p = [&](int e) { return encloses(p, Vec2::Zero(), Vec2(q.x[e], q.y[e]) + shift); };
+  include_edges(p, edges_p, edges_q, reach, in_q, box);
+  const bool partly = include_edges(q, edges_q, edges_p, reach, in_p, box);
+  box = box.grown(slack);
+  const double diagonal = std::hypot(box.x1 - box.x0, box.y1 - box.y0);
+  return {box, partly ? diagonal : std::numeric_limits<double>::infinity()};
+}
+
 // INT phi_p dA over the overlap if p has a distance field. `shift` moves the coordinates of the
 // other polygon to the frame of p.
 double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
                              const Vec2& shift) {
+  const double finite = all_finite(other, p, shift.x(), shift.y());
+  if (!(finite == 0)) return finite;
+  const OverlapBounds overlap = overlap_bounds(p, other, shift);
+  if (!(overlap.box.x0 <= overlap.box.x1)) return 0;
   DistanceVolume<double> integral;
   double volume = 0;
   for (const Ring& ring : placed_rings(other, shift)) {
@@ -110,7 +179,7 @@ double volume_under_distance(const PlacedPotential& p, const PlacedPotential& ot
       x.push_back(v.x());
       y.push_back(v.y());
     }
-    volume += integral.over(placed_distance(p), x, y);
+    volume += integral.over(placed_distance(p), x, y, overlap);
   }
   return volume;
 }
@@ -135,8 +204,13 @@ struct ClippedPair {
   [[nodiscard]] double overlap_area() const {
     const lower_envelope::Line<double> one{Vec2::Zero(), 1};
     double area = 0;
+    std::vector<Box> boxes;
+    for (const auto& part_b : parts_b) boxes.push_back(box_of(part_b.ring));
     for (const auto& part_a : parts_a) {
-      for (const auto& part_b : parts_b) {
+      const Box box = box_of(part_a.ring);
+      for (size_t i = 0; i < parts_b.size(); ++i) {
+        if (apart(box, boxes[i])) continue;
+        const auto& part_b = parts_b[i];
         area +=
             part_a.sign * part_b.sign *
             lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);

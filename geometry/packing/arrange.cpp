@@ -67,12 +67,16 @@ Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks
     width = std::max(width, box.x1 - box.x0);
     height = std::max(height, box.y1 - box.y0);
   }
-  // Twice the clearance, so that rounding cannot make neighbours too near.
-  width += 2 * space.clearance();
-  height += 2 * space.clearance();
+  // Rounding must make no neighbours too near, nor the first row and column too near to the border.
+  // So neighbours have nearly twice the clearance between them, and those at the border a bit more
+  // than the clearance. Blocks that fit with equal distances still do.
+  const double more = std::min(space.clearance() / 8, 1e-10 * std::max(width, height));
+  width += 2 * (space.clearance() - more);
+  height += 2 * (space.clearance() - more);
   const Box& region = space.box();
-  for (double y = region.y0 + height / 2; y + height / 2 <= region.y1 + height; y += height) {
-    for (double x = region.x0 + width / 2; x + width / 2 <= region.x1 + width; x += width) {
+  const double x0 = region.x0 + width / 2 + 2 * more, y0 = region.y0 + height / 2 + 2 * more;
+  for (double y = y0; y + height / 2 <= region.y1 + height; y += height) {
+    for (double x = x0; x + width / 2 <= region.x1 + width; x += width) {
       const auto next = static_cast<size_t>(result.placed);
       if (next == blocks.size()) return result;
       const Box& box = boxes[next];

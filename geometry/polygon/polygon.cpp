@@ -102,7 +102,10 @@ class RingCheck {
       }
     }
     if (repeated == n_) return;
-    throw InvalidPolygon(name(repeated) + " repeats " + name(first), vertex(repeated));
+    throw InvalidPolygon(name(repeated) + " repeats " + name(first) +
+                             " (a ring passes a point once: move one of them, or divide the ring "
+                             "there, as apothem polygon --repair does)",
+                         vertex(repeated));
   }
 
   void require_no_spike() const {
@@ -183,7 +186,8 @@ void require_holes_apart(const Polygon& polygon) {
       return;
     }
     throw InvalidPolygon(ring_name(k) + " crosses or touches " + ring_name(ring_of[i]) +
-                             " (a hole lies inside, at a distance; join rings that meet)",
+                             " (a hole lies inside, at a distance; join rings that share an edge, "
+                             "and move a vertex where rings touch at a point)",
                          0, k - 1);
   });
   const auto encloses = [&](int outer, int inner) {

@@ -10,6 +10,9 @@
 
 namespace apothem {
 
+/// What is to be done with a run of edges around which there is a box.
+enum class RunUse { none, whole, edges };
+
 /// The boxes around runs of edges of a ring, which halve each other. Edge i begins in point i.
 class RingTree {
  public:
@@ -32,6 +35,14 @@ class RingTree {
   template <class Meets, class F>
   void each(const Meets& meets, const F& f) const {
     if (!ring_.empty()) each(meets, f, 0, 0, ring_.size());
+  }
+
+  /// Calls f(from, to) for lines from one point of the ring to another, in ascending order. They
+  /// are edges, but judge(box) may say that a run of edges in the box is left out, or that one line
+  /// from its first point to its last one does for all of it.
+  template <class Judge, class F>
+  void each_line(const Judge& judge, const F& f) const {
+    if (!ring_.empty()) each_line(judge, f, 0, 0, ring_.size());
   }
 
  private:
@@ -79,6 +90,21 @@ class RingTree {
       return;
     }
     for (size_t e = first; e < end; ++e) f(static_cast<int>(e));
+  }
+
+  template <class Judge, class F>
+  void each_line(const Judge& judge, const F& f, size_t i, size_t first, size_t end) const {
+    const RunUse use = judge(boxes_[i]);
+    if (use == RunUse::none) return;
+    if (use == RunUse::whole) {
+      f(first, end % ring_.size());
+    } else if (end - first > kRun) {
+      const size_t middle = (first + end) / 2;
+      each_line(judge, f, 2 * i + 1, first, middle);
+      each_line(judge, f, 2 * i + 2, middle, end);
+    } else {
+      for (size_t e = first; e < end; ++e) f(e, (e + 1) % ring_.size());
+    }
   }
 
   std::vector<Vec2> ring_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -70,17 +71,16 @@ class Fill {
       add_cells(obstacles, filled);
     } else {
       // Batches do not keep clear of each other: a later one waits until nothing is in its way.
-      std::vector<std::vector<Vec2>> first;
+      std::vector<PolygonWithHoles> first;
       if (count_) refuse_too_many(*count_, 0, filled.batches);
       for (int batch = 0; batch < filled.batches; ++batch) {
-        std::vector<std::vector<Vec2>> rings = add_blocks(obstacles, random, filled);
+        std::vector<PolygonWithHoles> placed = add_blocks(obstacles, random, filled);
         if (batch > 0) continue;
-        first = std::move(rings);
-        double area = 0;
-        for (const std::vector<Vec2>& ring : first) area += ring_area(ring);
-        refuse_too_many(filled.count, area, filled.batches);
+        first = std::move(placed);
+        refuse_too_many(filled.count, area_of(first), filled.batches);
       }
-      for (std::vector<Vec2>& ring : first) obstacles.push_back({std::move(ring), {}});
+      // Blocks of later fills may lie in the holes of these.
+      std::ranges::move(first, std::back_inserter(obstacles));
     }
     filled.batch = filled.count / filled.batches;
     if (!element_) {
@@ -131,6 +131,8 @@ class Fill {
     cells_.cells = in_.count(count);
     if (cells_.cells < 1) in_.fail(count, "must be 1 or more");
     cells_.seed = seed;
+    object.read("convex", cells_.convex, &JsonReader::boolean);
+    object.read("smallest_angle", cells_.smallest_angle, &JsonReader::number, "rad");
     for (const char* key : {"shapes", "diameter", "solid_fraction", "angle"}) {
       if (const JsonValue* v = object.optional(key)) {
         in_.fail(*v, "has no meaning for Voronoi cells, which fill the region; leave it out");
@@ -144,6 +146,11 @@ class Fill {
   }
 
   void blocks(JsonObject& object) {
+    for (const char* key : {"convex", "smallest_angle"}) {
+      if (const JsonValue* v = object.optional(key)) {
+        in_.fail(*v, "is for the arrangement \"voronoi\"; leave it out");
+      }
+    }
     blocks_.read(object);
     const JsonValue* count = object.optional("count");
     const JsonValue* fraction = object.optional("solid_fraction");
@@ -220,8 +227,8 @@ class Fill {
                          bytes / 1e9, there / 1e9));
   }
 
-  std::vector<std::vector<Vec2>> add_blocks(const std::vector<PolygonWithHoles>& obstacles,
-                                            RandomNumbers& random, Filled& filled) {
+  std::vector<PolygonWithHoles> add_blocks(const std::vector<PolygonWithHoles>& obstacles,
+                                           RandomNumbers& random, Filled& filled) {
     double area = area_moments(*outline_).area;
     for (const Polygon& hole : holes_) area -= area_moments(hole).area;
     const std::vector<Block> blocks = draw_all(random, area);
@@ -233,13 +240,13 @@ class Fill {
         : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
                                          : grow(space, random, blocks, blocks_.turn());
     refuse_shortfall(blocks, found, space.area());
-    std::vector<std::vector<Vec2>> rings;
-    rings.reserve(found.rings.size());
+    std::vector<PolygonWithHoles> placed;
+    placed.reserve(found.rings.size());
     for (const int i : along_curve(found.rings)) {
-      add_body(filled, {found.rings[i], holes_of(blocks[i], found.poses[i])});
-      rings.push_back(found.rings[i]);
+      placed.push_back({found.rings[i], holes_of(blocks[i], found.poses[i])});
+      add_body(filled, placed.back());
     }
-    return rings;
+    return placed;
   }
 
   static Rings holes_of(const Block& block, const BlockPose& pose) {

@@ -18,7 +18,7 @@ auto of_polygon(const char* polygon, const Read& read) {
   try {
     return read();
   } catch (const InvalidPolygon& error) {
-    throw BadPairLine(error.what(), polygon, error.vertex());
+    throw BadPairLine(error, polygon);
   }
 }
 
@@ -41,6 +41,17 @@ ExpectedContact read_expected(const JsonReader& reader, const JsonValue& value) 
   return expected;
 }
 
+PolygonWithHoles read_json_polygon(const JsonReader& reader, const JsonValue& value) {
+  if (value.type() == JsonValue::Type::array) return {reader.ring(value), {}};
+  JsonObject object(reader, value);
+  PolygonWithHoles polygon{reader.ring(object.required("polygon", "[[x,y],...] in m")), {}};
+  if (const JsonValue* holes = object.optional("holes")) {
+    for (const JsonValue& hole : reader.array(*holes)) polygon.holes.push_back(reader.ring(hole));
+  }
+  object.finish();
+  return polygon;
+}
+
 std::vector<PolygonPair> read_json(const std::string& text, const std::string& file) {
   const JsonReader reader(file);
   const JsonValue document = parse_json(text, file);
@@ -52,8 +63,8 @@ std::vector<PolygonPair> read_json(const std::string& text, const std::string& f
     PolygonPair& pair = pairs.emplace_back();
     pair.name = reader.string(object.required("name", "string"));
     if (const JsonValue* kind = object.optional("kind")) pair.kind = reader.string(*kind);
-    pair.a = reader.ring(object.required("a", "[[x,y],...] in m"));
-    pair.b = reader.ring(object.required("b", "[[x,y],...] in m"));
+    pair.a = read_json_polygon(reader, object.required("a", "[[x,y],...] in m"));
+    pair.b = read_json_polygon(reader, object.required("b", "[[x,y],...] in m"));
     if (const JsonValue* expected = object.optional("expected")) {
       pair.expected = read_expected(reader, *expected);
     }
@@ -70,8 +81,8 @@ PolygonPair parse_pair(const std::string& line) {
   std::istringstream words(line);
   PolygonPair pair;
   words >> pair.name;
-  pair.a = of_polygon("a", [&] { return read_ring(words); });
-  pair.b = of_polygon("b", [&] { return read_ring(words); });
+  pair.a = of_polygon("a", [&] { return read_line_polygon(words); });
+  pair.b = of_polygon("b", [&] { return read_line_polygon(words); });
   of_polygon("", [&] { require_end(words); });
   return pair;
 }
@@ -86,12 +97,13 @@ std::vector<PolygonPair> read_pair_file(const std::string& file) {
     try {
       pairs.push_back(parse_pair(line.text));
     } catch (const BadPairLine& error) {
+      const std::string hole = error.hole() ? fmt::format(", hole {}", *error.hole()) : "";
       const std::string place =
           error.polygon().empty()
               ? ""
-              : fmt::format(", polygon {}, vertex {}", error.polygon(), error.vertex());
+              : fmt::format(", polygon {}{}, vertex {}", error.polygon(), hole, error.vertex());
       throw SceneError(file, line.number, "",
-                       fmt::format("{}{}: {}; write {}", line.has_count ? line.name : "the pair",
+                       fmt::format("{}{}: {}; write {}", line.has_polygon ? line.name : "the pair",
                                    place, error.what(), kPairForm));
     }
   });

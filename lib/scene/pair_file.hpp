@@ -2,11 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "geometry/polygon/point.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon_with_holes.hpp"
 
 namespace apothem {
 
@@ -27,32 +27,32 @@ struct ExpectedContact {
 struct PolygonPair {
   std::string name;
   std::string kind;  ///< empty if the file does not give it
-  std::vector<Vec2> a, b;
+  PolygonWithHoles a, b;
   std::optional<ExpectedContact> expected;
 };
 
 /// The error for a line that is not a pair. It says what is wrong, in which polygon ("a" or "b", or
-/// "" for what stands behind both) and at which vertex.
-class BadPairLine : public std::invalid_argument {
+/// "" for what stands behind both), in which of its holes, and at which vertex.
+class BadPairLine : public InvalidPolygon {
  public:
-  BadPairLine(const std::string& reason, std::string polygon, int vertex)
-      : std::invalid_argument(reason), polygon_(std::move(polygon)), vertex_(vertex) {}
+  BadPairLine(const InvalidPolygon& error, std::string polygon)
+      : InvalidPolygon(error), polygon_(std::move(polygon)) {}
   [[nodiscard]] const std::string& polygon() const { return polygon_; }
-  [[nodiscard]] int vertex() const { return vertex_; }
 
  private:
   std::string polygon_;
-  int vertex_;
 };
 
 /// What a line of a pair must hold.
-inline constexpr const char* kPairForm = "name n x y ... m x y ...";
+inline constexpr const char* kPairForm =
+    "name n x y ... m x y ..., or POLYGON ((x y, ...), ...) for either";
 
-/// Reads the line "name n x y ... m x y ...", where n and m are the numbers of vertices. Throws
-/// BadPairLine.
+/// Reads a line as kPairForm describes it, where n and m are the numbers of vertices, see
+/// read_line_polygon(). Throws BadPairLine.
 PolygonPair parse_pair(const std::string& line);
 
-/// Reads a file with one pair per line, or with JSON as in data/polygons/hard-pairs.json. Throws
+/// Reads a file with one pair per line, or with JSON as in data/polygons/hard-pairs.json, where a
+/// polygon is [[x,y],...] or {"polygon": [[x,y],...], "holes": [[[x,y],...],...]}. Throws
 /// SceneError.
 std::vector<PolygonPair> read_pair_file(const std::string& file);
 

@@ -8,10 +8,22 @@
 #include "geometry/polygon/polygon.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/ring_text.hpp"
+#include "lib/scene/wkt.hpp"
 #include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
+namespace {
+
+// Whether a word begins WKT of a polygon, right or wrong.
+bool begins_wkt(std::string_view word) {
+  const std::string capitals = upper_case(word);
+  return capitals.starts_with("POLYGON") || capitals.starts_with("MULTIPOLYGON") ||
+         capitals.starts_with("SRID=");
+}
+
+}  // namespace
 
 void for_each_line(const std::string& file, const char* form,
                    const std::function<void(const BatchLine&)>& evaluate) {
@@ -29,8 +41,8 @@ void for_each_line(std::istream& text, const std::string& file, const char* form
     std::istringstream words(line.text);
     if (!(words >> line.name) || line.name == "#") continue;
     any = true;
-    std::string count;
-    line.has_count = words >> count && find_count(count);
+    std::string shape;
+    line.has_polygon = words >> shape && (find_count(shape) || begins_wkt(shape));
     evaluate(line);
   }
   if (!any) throw SceneError(file, std::string("is empty; write on each line ") + form);
@@ -46,7 +58,7 @@ std::vector<Vec2> read_ring(std::istream& line) {
     // Nothing but a number is quoted: the file may be any other one.
     const bool is_number = word.find_first_not_of("0123456789.eE+-") == std::string::npos;
     throw InvalidPolygon(is_number ? fmt::format("the number of vertices: {}", error.what())
-                                   : "the number of vertices is not a whole number",
+                                   : "neither a whole number of vertices nor POLYGON ((x y, ...))",
                          0);
   }
   std::vector<Vec2> ring;
@@ -68,6 +80,26 @@ std::vector<Vec2> read_ring(std::istream& line) {
   }
   leave_out_closing_vertex(ring);
   return ring;
+}
+
+PolygonWithHoles read_line_polygon(std::istringstream& line) {
+  const std::istringstream::pos_type start = line.tellg();
+  std::string word;
+  const bool is_wkt = line >> word && begins_wkt(word);
+  line.clear();
+  line.seekg(start);
+  if (!is_wkt) return {read_ring(line), {}};
+  const std::string text = line.str();
+  std::string_view rest = std::string_view(text).substr(static_cast<size_t>(start));
+  try {
+    const PolygonText read = take_wkt(rest, "");
+    line.seekg(static_cast<std::istringstream::off_type>(text.size() - rest.size()));
+    PolygonWithHoles polygon{read.outer.ring, {}};
+    for (const RingText& hole : read.holes) polygon.holes.push_back(hole.ring);
+    return polygon;
+  } catch (const PolygonError& error) {
+    throw InvalidPolygon(error.reason(), std::max(error.vertex(), 0), error.hole());
+  }
 }
 
 void require_end(std::istream& line) {

@@ -21,18 +21,19 @@ class Pieces {
 
   [[nodiscard]] std::string_view now() const { return now_; }
   [[nodiscard]] int line() const { return line_; }  // of the piece, counted from 1
+  [[nodiscard]] std::string_view rest() const { return text_.substr(start_); }  // with the piece
   [[nodiscard]] bool is_word() const { return !now_.empty() && kMarks.find(now_[0]) == npos; }
 
   void next() {
     for (; at_ < text_.size() && kSpace.find(text_[at_]) != npos; ++at_)
       line_ += text_[at_] == '\n';
-    const size_t start = at_;
+    start_ = at_;
     if (at_ < text_.size() && kMarks.find(text_[at_]) != npos) {
       ++at_;
     } else {
       at_ = std::min(text_.find_first_of("(),; \t\r\n\f\v", at_), text_.size());
     }
-    now_ = text_.substr(start, at_ - start);
+    now_ = text_.substr(start_, at_ - start_);
   }
   bool take(char mark) {
     if (now_.size() != 1 || now_[0] != mark) return false;
@@ -44,7 +45,7 @@ class Pieces {
   static constexpr auto npos = std::string_view::npos;
   static constexpr std::string_view kMarks = "(),;", kSpace = " \t\r\n\f\v";
   std::string_view text_, now_;
-  size_t at_ = 0;
+  size_t start_ = 0, at_ = 0;  // of the piece, and behind it
   int line_ = 1;
 };
 
@@ -56,6 +57,16 @@ constexpr std::array kOtherShapes{"POINT",           "LINESTRING",         "MULT
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file) : in_(text), file_(file) {}
+
+  PolygonText read_all() {
+    PolygonText polygon = read();
+    if (in_.now() == ";") in_.next();
+    if (in_.is_word() && upper_case(in_.now()).find("POLYGON") != std::string::npos) {
+      fail(std::string("holds more than one polygon; ") + kOnePolygon);
+    }
+    if (!in_.now().empty()) fail(fmt::format("text behind the polygon: \"{}\"", in_.now()));
+    return polygon;
+  }
 
   PolygonText read() {
     skip_coordinate_system();
@@ -73,13 +84,10 @@ class Reader {
     } else {
       polygon_ = polygon();
     }
-    if (in_.now() == ";") in_.next();
-    if (in_.is_word() && upper_case(in_.now()).find("POLYGON") != std::string::npos) {
-      fail(std::string("holds more than one polygon; ") + kOnePolygon);
-    }
-    if (!in_.now().empty()) fail(fmt::format("text behind the polygon: \"{}\"", in_.now()));
     return std::move(polygon_);
   }
+
+  [[nodiscard]] std::string_view rest() const { return in_.rest(); }
 
  private:
   [[noreturn]] void fail(const std::string& what, int vertex = -1) const {
@@ -214,7 +222,14 @@ class Reader {
 }  // namespace
 
 PolygonText parse_wkt(std::string_view text, const std::string& file) {
-  return Reader(text, file).read();
+  return Reader(text, file).read_all();
+}
+
+PolygonText take_wkt(std::string_view& text, const std::string& file) {
+  Reader reader(text, file);
+  PolygonText polygon = reader.read();
+  text = reader.rest();
+  return polygon;
 }
 
 }  // namespace apothem

@@ -16,4 +16,7 @@ namespace apothem {
 /// are none.
 PolygonText parse_wkt(std::string_view text, const std::string& file);
 
+/// Reads the polygon that a text begins with as parse_wkt() does, and takes it off the text.
+PolygonText take_wkt(std::string_view& text, const std::string& file);
+
 }  // namespace apothem

@@ -173,6 +173,27 @@ TEST_CASE("blocks are placed in the holes of bodies", "[fill][holes]") {
   }
 }
 
+TEST_CASE("blocks of a later fill may lie in the holes of those of an earlier one",
+          "[fill][holes]") {
+  const Scene scene = scene_of("", R"("fill": [
+    { "name": "ring", "material": "rock", "region": [[0, 0], [12, 0], [12, 12], [0, 12]], "count": 4,
+      "diameter": 1.9, "angle": 0, "shapes": [ { "polygon": [[0,0],[3,0],[3,3],[0,3]],
+        "holes": [ [[0.2,0.2],[2.8,0.2],[2.8,2.8],[0.2,2.8]] ] } ], "arrangement": "lattice" },
+    { "name": "stone", "material": "rock", "region": [[0, 0], [12, 0], [12, 12], [0, 12]], "count": 40,
+      "diameter": 0.5, "shapes": [ { "quadrilateral": {} } ] } ], )");
+  REQUIRE(scene.model.bodies.size() == 44);
+  int inside = 0;
+  for (size_t i = 4; i < 44; ++i) {
+    const Polygon stone = placed(scene.model.bodies[i]);
+    for (size_t j = 0; j < i; ++j) {
+      const Polygon other = placed(scene.model.bodies[j]);
+      CHECK(apart_from(other, stone));
+      if (j < 4) inside += strictly_inside(other.outer_ring(), stone[0]);
+    }
+  }
+  CHECK(inside > 5);
+}
+
 TEST_CASE("shapes of a fill may have holes, in which no other block is put", "[fill][holes]") {
   const std::string ring =
       R"({ "polygon": [[0,0],[3,0],[3,3],[0,3]], "holes": [ [[1,0.5],[2.5,0.5],[2.5,2.5],[1,2.5]] ] })";

@@ -215,7 +215,17 @@ std::vector<Default> population_defaults() {
   const Json quads = filled({{"quadrilateral", Json::object()}});
   const Json meshes = with(quads, "/fill/0/mesh", {{"size", 0.2}});
   const Json batches = with(quads, "/fill/0/repeat", {{"times", 2}});
+  const Json cells =
+      scene_with("fill", {{{"name", "stone"},
+                           {"material", "rock"},
+                           {"region", {{0, 0}, {4, 0}, {4, 4}, {0, 4}}},
+                           {"holes", Json::array({{{1, 1}, {2.9, 1.2}, {2.7, 3.1}, {1.2, 2.8}}})},
+                           {"arrangement", "voronoi"},
+                           {"count", 12}}});
   return {
+      {"/definitions/fill/properties/convex", cells, "/fill/0/convex", true},
+      {"/definitions/fill/properties/smallest_angle", with(cells, "/fill/0/convex", true),
+       "/fill/0/smallest_angle", 0.9},
       {"/definitions/shape/properties/quadrilateral/properties/angles",
        quads,
        "/fill/0/shapes/0/quadrilateral/angles",

@@ -1,6 +1,7 @@
 // Fills of scenes: bodies from shapes, sizes, and arrangements.
 #include <catch2/catch.hpp>
 
+#include "geometry/meshing/cell_shapes.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "lib/model/rotation.hpp"
 #include "lib/scene/scene.hpp"
@@ -151,6 +152,33 @@ TEST_CASE("Voronoi cells and a dense packing fill a region", "[fill]") {
   area = 0;
   for (const RigidBody& b : drilled.bodies) area += b.area;
   CHECK(area == Approx(16 - .75).epsilon(1e-12));
+  // Beside the corners of a hole, cells are not convex or have small angles.
+  const auto cells_with = [](const std::string& how) {
+    std::vector<Polygon> found;
+    for (const RigidBody& b : model_of(R"("arrangement": "voronoi", "count": 12,
+      "holes": [ [[1, 1], [2.9, 1.2], [2.7, 3.1], [1.2, 2.8]] ])" +
+                                       how)
+                                  .bodies) {
+      found.emplace_back(ring_of(b));
+    }
+    return found;
+  };
+  const auto not_convex = [](const Polygon& cell) { return !cell.is_convex(); };
+  const auto smallest = [](const std::vector<Polygon>& of) {
+    double angle = M_PI;
+    for (const Polygon& cell : of) {
+      for (int i = 0; i < cell.size(); ++i) {
+        angle = std::min(angle, corner_angle(cell[i] - cell.before(i), cell.after(i) - cell[i]));
+      }
+    }
+    return angle;
+  };
+  const std::vector<Polygon> plain = cells_with("");
+  CHECK(std::ranges::any_of(plain, not_convex));
+  const std::vector<Polygon> convex = cells_with(R"(, "convex": true)");
+  CHECK(std::ranges::none_of(convex, not_convex));
+  CHECK(smallest(cells_with(R"(, "convex": true, "smallest_angle": 0.9)")) >
+        smallest(convex) + .05);
   const Model dense = model_of(R"("arrangement": "dense", "shapes": [ { "quadrilateral": {} } ],
     "diameter": 0.5, "solid_fraction": 0.7)");
   area = 0;
@@ -231,6 +259,10 @@ TEST_CASE("what a fill cannot do is one error with its place and a remedy", "[fi
       error_of(quads + R"("count": 2, "diameter": 0.5)",
                R"({ "name": "stone-1", "material": "rock", "polygon": [[9,9],[10,9],[10,10]] })"),
       Contains("already the name of another body"));
+  CHECK_THAT(error_of(quads + R"("count": 5, "diameter": 1, "convex": true)"),
+             Contains("/fill/0/convex") && Contains("is for the arrangement \"voronoi\""));
+  CHECK_THAT(error_of(R"("arrangement": "voronoi", "count": 10, "smallest_angle": 2)"),
+             Contains("/fill/0"));
   CHECK_THAT(error_of(R"("arrangement": "voronoi", "count": 10)",
                       R"({ "name": "a", "material": "rock", "polygon": [[1,1],[2,1],[2,2]] })"),
              Contains("overlaps a body"));

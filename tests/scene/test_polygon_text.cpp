@@ -271,13 +271,70 @@ TEST_CASE("a line of a batch is read strictly, and says where it is wrong", "[sc
   refused("", 0, "the number of vertices is missing");
   refused("3.5 0 0 1 0 0 1", 0, "\"3.5\" is not a whole number");
   refused("-3 0 0", 0, "\"-3\" is not a whole number");
-  refused("0x3 0 0 1 0 0 1", 0, "is not a whole number");
+  refused("0x3 0 0 1 0 0 1", 0, "neither a whole number of vertices nor POLYGON");
   refused("3 0 0 1 0 0", 2, "the line ends before vertex 2 of 3 has its y");
   refused("3 0 0 1 0", 2, "the line ends before vertex 2 of 3 begins");
   refused("3 0 0 1 0 0 0x1", 2, "vertex 2: \"0x1\" is not a decimal number");
   refused("3 0 0 1 0, 0 1", 1, "vertex 1: \"0,\" is not a decimal number");
   refused("3 0 0 1 inf 0 1", 1, "vertex 1: \"inf\" is not finite");
   refused("3 0 0 1 0 0 1 7", 0, "text behind the last vertex: \"7\"");
+}
+
+TEST_CASE("a line of a batch holds polygons with holes as WKT", "[scene][text]") {
+  const Rings rings{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{1, 1}, {2, 1}, {1, 2}}};
+  const std::string wkt = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0),(1 1, 2 1, 1 2, 1 1))";
+  for (const std::string& words : std::vector<std::string>{
+           wkt, " SRID=4326; " + wkt + "\r", "multipolygon(((0 0,4 0,4 4,0 4),(1 1,2 1,1 2)))"}) {
+    INFO(words);
+    std::istringstream line(words);
+    CHECK(rings_of(read_line_polygon(line)) == rings);
+    CHECK_NOTHROW(require_end(line));
+  }
+  // Either polygon of a pair in either notation, and nothing of one is taken for the other's.
+  for (const std::string& text :
+       {"p " + wkt + " 3 0 0 1.5 0 0.25 1e-3", "p " + wkt + "POLYGON((0 0,1.5 0,0.25 1e-3))",
+        "p 4 0 0 1.5 0 0.25 1e-3 0 0 " + wkt}) {
+    INFO(text);
+    PolygonPair pair = parse_pair(text);
+    if (pair.a.holes.empty()) std::swap(pair.a, pair.b);
+    CHECK(rings_of(pair.a) == rings);
+    CHECK(rings_of(pair.b) == Rings{kTriangle});
+  }
+  const auto refused = [](const std::string& text, const std::string& polygon,
+                          std::optional<int> hole, int vertex, const char* why) {
+    INFO(text);
+    try {
+      parse_pair(text);
+      FAIL("is accepted");
+    } catch (const BadPairLine& error) {
+      CHECK(error.polygon() == polygon);
+      CHECK(error.hole() == hole);
+      CHECK(error.vertex() == vertex);
+      CHECK_THAT(error.what(), Catch::Contains(why));
+    }
+  };
+  refused("p POLYGON ((0 0, 1 0, 0 1", "a", {}, 2, "the text ends behind vertex 2");
+  refused("p " + wkt + " POLYGON ((0 0, 4 0, 0 4), (1 1, 2 1, 1))", "b", 0, 2, "has one coordina");
+  refused("p " + wkt, "b", {}, 0, "the number of vertices is missing");
+  refused("p " + wkt + " POINT (1 1)", "b", {}, 0,
+          "neither a whole number of vertices nor POLYGON");
+  refused("p " + wkt + wkt + " 7", "", {}, 0, "text behind the last vertex: \"7\"");
+  refused("p POLYGON Z ((0 0 1, 1 0 1, 0 1 1))", "a", {}, 0, "two-dimensional");
+}
+
+TEST_CASE("pairs with holes in JSON", "[scene][text]") {
+  const Folder folder;
+  const auto pairs = [&](const std::string& a) {
+    return read_pair_file(folder.write("pairs.json", R"({"pairs": [{"name": "p", "a": )" + a +
+                                                         R"(, "b": [[0,0],[1,0],[0,1]]}]})"));
+  };
+  const std::vector<PolygonPair> read =
+      pairs(R"({"polygon": [[0,0],[4,0],[4,4],[0,4]], "holes": [[[1,1],[2,1],[1,2]]]})");
+  REQUIRE(read.size() == 1);
+  CHECK(rings_of(read[0].a) == Rings{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{1, 1}, {2, 1}, {1, 2}}});
+  CHECK(read[0].b.holes.empty());
+  CHECK_THROWS_WITH(pairs(R"({"polygon": [[0,0],[4,0],[4,4]], "hole": []})"),
+                    Catch::Contains("did you mean \"holes\"?"));
 }
 
 TEST_CASE("blank lines and comments of a batch are skipped, one without a line is refused",

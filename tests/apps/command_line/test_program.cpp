@@ -793,24 +793,63 @@ TEST_CASE("contact by either field", "[program]") {
 
 TEST_CASE("contact of many pairs goes on after a refusal", "[program]") {
   const Folder folder;
-  const std::string file = folder.write("pairs.txt",
-                                        "good#1 3 0 0 1 0 0 1 3 0.2 0.2 1 1 0 1\n"
-                                        "bow#2 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n"
-                                        "short#3 3 0 0 1 0\n"
-                                        "nan#4 3 0 0 1 0 0 nan 3 0 0 1 0 0 1\n"
-                                        "good#5 3 0 0 1 0 0 1 3 5 5 6 5 5 6\n");
+  const std::string file =
+      folder.write("pairs.txt",
+                   "good#1 3 0 0 1 0 0 1 3 0.2 0.2 1 1 0 1\n"
+                   "bow#2 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n"
+                   "short#3 3 0 0 1 0\n"
+                   "nan#4 3 0 0 1 0 0 nan 3 0 0 1 0 0 1\n"
+                   "good#5 3 0 0 1 0 0 1 3 5 5 6 5 5 6\n"
+                   "ring#6 POLYGON((0 0,3 0,3 3,0 3),(1 1,2 1,2 2,1 2)) "
+                   "POLYGON((.5 .5,2.5 .5,2.5 2.5,.5 2.5))\n"
+                   "bad#7 3 0 0 1 0 0 1 POLYGON((0 0,3 0,3 3),(5 5,6 5,6 6))\n");
   const Result r = run({"contact", "--batch", file, "--method", "all"}, folder);
   CHECK(r.code == 2);
   std::istringstream text(r.out);
   std::vector<Json> objects;
   for (std::string line; std::getline(text, line);) objects.push_back(Json::parse(line));
-  REQUIRE(objects.size() == 5);
+  REQUIRE(objects.size() == 7);
   CHECK(objects[0]["results"].size() == 3);
   CHECK(objects[1]["error"].get<std::string>().find("cross") != std::string::npos);
   CHECK(objects[1]["vertex"] == 2);
   CHECK(objects[2].contains("error"));
   CHECK(objects[3]["vertex"] == 2);
   CHECK(objects[4]["results"][0]["force"][0] == 0);
+  for (const Json& result : objects[5]["results"]) {
+    CHECK(result["overlap_area"].get<double>() == Approx(3));
+  }
+  CHECK(objects[6]["polygon"] == "b");
+  CHECK(objects[6]["hole"] == 0);
+  CHECK(objects[6]["line"] == 7);
+}
+
+TEST_CASE("the ending of a file of cells decides its format", "[program]") {
+  const Folder folder;
+  const std::string region =
+      folder.write("r.wkt", "POLYGON ((0 0, 3 0, 3 2, 0 2), (1 .5, 2 .5, 1 1))");
+  const auto cells = [&](const std::string& file) {
+    return run({"mesh", region, "--voronoi", "8", "-o", folder / file}, folder);
+  };
+  REQUIRE(cells("c.json").code == 0);
+  const size_t count = Json::parse(content(folder / "c.json"))["cells"].size();
+  REQUIRE(cells("c.geojson").code == 0);
+  const Json features = Json::parse(content(folder / "c.geojson"))["features"];
+  REQUIRE(features.size() == count);
+  CHECK(features[1]["properties"]["cell"] == 1);
+  REQUIRE(cells("c.wkt").code == 0);
+  CHECK(content(folder / "c.wkt").starts_with("MULTIPOLYGON"));
+  REQUIRE(cells("c.svg").code == 0);
+  CHECK(content(folder / "c.svg").find("<svg") != std::string::npos);
+  REQUIRE(cells("c.VTU").code == 0);
+  CHECK(content(folder / "c.VTU").find("VTKFile") != std::string::npos);
+  REQUIRE(run({"mesh", test::kSource + "/data/meshes/mixed.msh", "-o", folder / "m.wkt"}, folder)
+              .code == 0);
+  CHECK(content(folder / "m.wkt").starts_with("MULTIPOLYGON"));
+  const Result wrong = cells("c.vtk");
+  CHECK(wrong.code == 2);
+  CHECK(wrong.err.find("-o: must end in .json, .wkt, .geojson, .svg or .vtu") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "c.vtk"));
+  CHECK(run({"mesh", region, "--voronoi", "8", "--vtk", folder / "c.json"}, folder).code == 2);
 }
 
 TEST_CASE("a mesh of gmsh's, described", "[program]") {
@@ -916,7 +955,7 @@ TEST_CASE("a mesh of a region", "[program]") {
   }
   CHECK_FALSE(std::filesystem::exists(folder / "x"));
   for (const char* option : {"-o", "--vtk"}) {
-    const Result r = with({option, "/proc/none/m"});
+    const Result r = with({option, "/proc/none/m.vtu"});
     CHECK(r.code == 4);
     CHECK(r.out.empty());
   }

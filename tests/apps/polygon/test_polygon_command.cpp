@@ -188,12 +188,16 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
                                         "short 3 0 0 1 0\n"
                                         "nan 3 0 0 1 0 0 nan\n"
                                         "long 3 0 0 1 0 0 1 7\n"
-                                        "l 6 0 0 2 0 2 1 1 1 1 2 0 2\n");
+                                        "l 6 0 0 2 0 2 1 1 1 1 2 0 2\n"
+                                        "frame POLYGON ((0 0,3 0,3 3,0 3),(1 1,1 2,2 2,2 1))\n"
+                                        "touch POLYGON ((0 0,3 0,3 3,0 3),(1 1,1 2,3 2))\n"
+                                        "cut POLYGON ((0 0,3 0,3 3,0 3),(1 1,1 2\n"
+                                        "point POINT (0 0)\n");
   const Result r = run({"polygon", "--batch", file}, folder);
   CHECK(r.code == 2);
   CHECK(r.err.empty());
   const std::vector<Json> list = objects(r.out);
-  REQUIRE(list.size() == 6);
+  REQUIRE(list.size() == 10);
   CHECK(list[0]["name"] == "square");
   CHECK(list[0]["area"] == 4);
   CHECK(list[0]["singular_area"]["kind"] == "point");
@@ -206,6 +210,15 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
   }
   CHECK(list[5]["name"] == "l");
   CHECK(list[5]["singular_area"]["kind"] == "segment");
+  CHECK(list[6]["name"] == "frame");
+  CHECK(list[6]["area"] == 8);
+  CHECK(list[6]["holes"] == Json::parse("[[[1,1],[1,2],[2,2],[2,1]]]"));
+  for (int i = 7; i < 10; ++i) CHECK(list[i]["line"] == i + 2);
+  CHECK(list[7]["hole"] == 0);
+  CHECK(list[7]["vertex"].is_number_integer());
+  CHECK(list[7]["error"].get<std::string>().find("touches the outer ring") != std::string::npos);
+  CHECK(list[8]["hole"] == 0);
+  CHECK(list[9]["name"].is_null());
   CHECK(run({"polygon", "--batch", folder.write("ok.txt", "t 3 0 0 1 0 0 1\n")}, folder).code == 0);
   for (const char* command : {"polygon", "contact"}) {
     const Result empty = run({command, "--batch", folder.write("empty.txt", "\n")}, folder);

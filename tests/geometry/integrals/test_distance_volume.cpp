@@ -281,3 +281,37 @@ TEST_CASE("the integral of a distance field is the same with vertices within the
     }
   }
 }
+
+TEST_CASE("the integral over a big ring is the sum of those over triangles", "[distance-volume]") {
+  test::SeededRandom random(72);
+  int deep = 0;
+  for (int i = 0; i < test::scaled(120); ++i) {
+    const int n = random.integer(40, 150);  // more than the edges that are looked at one by one
+    const Polygon other = i % 4 == 0   ? samples::gear(n / 4)
+                          : i % 4 == 1 ? samples::comb(n / 4, 9)
+                          : i % 4 == 2 ? samples::star(n / 2, .5)
+                                       : samples::random_star_shaped(random, n, .3);
+    const Box box = bounding_box(other);
+    const double size = box.extent();
+    const Polygon owner = samples::shifted(
+        samples::scaled(samples::random_star_shaped(random, random.integer(4, 40), .4),
+                        random.uniform(.2, 1) * size),
+        {random.uniform(box.x0, box.x1), random.uniform(box.y0, box.y1)});
+    for (const double length : {.05, 10 * size}) {
+      double sum = 0, sizes = 0;
+      for (int k = 2; k < other.size(); ++k) {
+        const std::vector<Vec2> corners{other[0], other[k - 1], other[k]};
+        const double area = ring_area(corners);
+        if (area == 0) continue;
+        const double part = volume(owner, Polygon(corners), length, Vec2::Zero());
+        sum += area > 0 ? part : -part;
+        sizes += part;
+      }
+      const double got = volume(owner, other, length, Vec2::Zero());
+      INFO("pair " << i << ", length " << length << ": " << got << ", " << sum);
+      CHECK(std::abs(got - sum) <= 1e-12 * sizes + 1e-15 * size * size);
+      deep += got > 0;
+    }
+  }
+  CHECK(deep > test::scaled(120));
+}

@@ -239,8 +239,8 @@ TEST_CASE("public pairs: edge and overlap against the oracle", "[near-degenerate
   for (std::string line; std::getline(file, line);) {
     try {
       const PolygonPair pair = parse_pair(line);
-      if (pair.a.size() + pair.b.size() > 200) continue;
-      const Polygon a(pair.a), b(pair.b);
+      if (pair.a.outer.size() + pair.b.outer.size() > 200) continue;
+      const Polygon a(pair.a.outer), b(pair.b.outer);
       for (const Field field : {Field::roof, Field::distance}) {
         INFO(pair.name << (field == Field::roof ? ", roof" : ", distance field"));
         touching += check_methods(a, b, choice_of(field), 1e-9);

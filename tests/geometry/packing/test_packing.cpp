@@ -133,6 +133,24 @@ TEST_CASE("shapes of blocks are simple, about their centroid, and of area 1", "[
   CHECK_THROWS_AS(random_quadrilateral(random, 1.5707, 1.5709), std::invalid_argument);
 }
 
+TEST_CASE("a lattice of equal blocks begins at the border", "[packing]") {
+  SeededRandom random(12);
+  for (int i = 0; i < scaled(400); ++i) {
+    const int n = random.integer(2, 6);
+    const double side = random.uniform(.1, 3), gap = i % 2 == 0 ? 0 : side * random.uniform(0, .2);
+    const Vec2 from(random.uniform(-5, 5), random.uniform(-5, 5));
+    // Room for n squares with gaps beside and twice the gap between them, and hardly more.
+    const double size = n * (side + 2 * gap) + 1e-8 * side * n;
+    const Polygon region(
+        {from, from + Vec2(size, 0), from + Vec2(size, size), from + Vec2(0, size)});
+    PackingSpace space(region, {}, gap, side);
+    const Block square{{{-.5, -.5}, {.5, -.5}, {.5, .5}, {-.5, .5}}, side};
+    const std::vector<Block> blocks(static_cast<size_t>(n * n), square);
+    CAPTURE(n, side, gap);
+    CHECK(put_on_lattice(space, blocks).placed == n * n);
+  }
+}
+
 TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
   const Kind kind = GENERATE(Kind::quads, Kind::polygons, Kind::crosses, Kind::sizes);
   for (const double gap : {0., .01}) {

@@ -90,7 +90,7 @@ std::vector<PotentialChoice> choices_with_all_references() {
 TEST_CASE("around holes: the largest circle is the one that quartered squares find",
           "[inscribed_circle][holes]") {
   test::SeededRandom random(71);
-  for (int i = 0; i < test::scaled(400); ++i) {
+  for (int i = 0; i < (test::long_run() ? 1000 : test::scaled(400)); ++i) {
     const Polygon polygon = test::random_drilled(random, random.integer(1, 20));
     INFO("polygon " << i << ": " << polygon.size() << " vertices, " << polygon.rings() << " rings");
     check_circle(polygon, 1e-9);

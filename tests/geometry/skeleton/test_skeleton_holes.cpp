@@ -78,7 +78,7 @@ SingularArea singular_at(const Polygon& polygon, double depth) {
 
 TEST_CASE("around holes: the roof is that of the motorcycle graph", "[skeleton][holes]") {
   test::SeededRandom random(61);
-  for (int i = 0; i < test::scaled(600); ++i) {
+  for (int i = 0; i < (test::long_run() ? 1000 : test::scaled(600)); ++i) {
     const Polygon polygon = test::random_drilled(random, random.integer(1, 20));
     INFO("polygon " << i << ": " << polygon.size() << " vertices, " << polygon.rings() << " rings");
     const Skeleton skeleton = test::lawful(polygon);

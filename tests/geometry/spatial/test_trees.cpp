@@ -76,3 +76,42 @@ TEST_CASE("the tree of a ring finds edges near a point, and counts those that a 
     }
   }
 }
+
+TEST_CASE("lines of a ring: runs are left out, or one line stands for them", "[boxes]") {
+  test::SeededRandom random(93);
+  for (int round = 0; round < test::scaled(500); ++round) {
+    const std::vector<Vec2> ring = random_points(random, random.integer(0, 200));
+    const RingTree tree(ring);
+    const double left = random.uniform(0, 5), high = random.uniform(0, 5);
+    const auto beside = [&](const Vec2& p) { return p.x() < left; };
+    const auto above = [&](const Vec2& p) { return p.y() > high; };
+    const auto judge = [&](const Box& box) {
+      return box.x1 < left ? RunUse::none : box.y0 > high ? RunUse::whole : RunUse::edges;
+    };
+    size_t at = 0, lines = 0;  // the edge that comes next
+    tree.each_line(judge, [&](size_t from, size_t to) {
+      for (; at < from; ++at) {
+        REQUIRE(beside(ring[at]));
+        REQUIRE(beside(after(ring, at)));
+      }
+      REQUIRE(at == from);
+      const size_t end = to > from ? to : ring.size();
+      REQUIRE((to > from || to == 0));
+      for (; end > from + 1 && at < end; ++at) {
+        REQUIRE(above(ring[at]));
+        REQUIRE(above(after(ring, at)));
+      }
+      at = end;
+      ++lines;
+    });
+    for (; at < ring.size(); ++at) REQUIRE(beside(ring[at]));
+    REQUIRE(lines <= ring.size());
+  }
+  // A ring with nothing to look at closely is one line, or none.
+  std::vector<std::pair<size_t, size_t>> found;
+  const RingTree tree(random_points(random, 100));
+  tree.each_line([](const Box&) { return RunUse::whole; },
+                 [&](size_t i, size_t j) { found.emplace_back(i, j); });
+  CHECK(found == std::vector<std::pair<size_t, size_t>>{{0, 0}});
+  tree.each_line([](const Box&) { return RunUse::none; }, [&](size_t, size_t) { FAIL(); });
+}
