@@ -38,8 +38,9 @@ py::array_t<ContactRow> contacts(const Driver& driver) {
 
 py::dict energies(const Driver& driver) {
   const Energies e = driver.look().simulation().energies();
-  const double values[]{e.kinetic,       e.strain,       e.contact,       e.gravity,
-                        e.friction_loss, e.damping_loss, e.numerical_loss, e.external_work, e.total_error};
+  const double values[]{e.kinetic,        e.strain,        e.contact,
+                        e.gravity,        e.friction_loss, e.damping_loss,
+                        e.numerical_loss, e.external_work, e.total_error};
   py::dict dict;
   for (size_t i = 0; i < kEnergyColumns.size(); ++i) dict[kEnergyColumns[i].name] = values[i];
   return dict;

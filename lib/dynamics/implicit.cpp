@@ -21,7 +21,7 @@ constexpr double kFarthest = .2;  // of an inradius, which a step may lead over
 constexpr double kRest = 1e-10, kBalanced = 1e-5;
 // Forces of stiff contacts at the end of a step tell of vibrations that have not died out: a step
 // that is three times as long as the one before makes them grow (docs/theory.md, "Implicit steps").
-constexpr double kMostLonger = 2, kMostShorter = 5, kReserve = .8;
+constexpr double kMostLonger = 2, kMostShorter = 5, kLessAgain = .5, kReserve = .8;
 
 }  // namespace
 
@@ -90,57 +90,62 @@ double ImplicitSteps::longest(const State& state) const {
   return kFarthest / fastest;
 }
 
-std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, std::int64_t most) {
+// Sets out from `state`.
+void ImplicitSteps::begin(const State& state) {
   before_ = state;
+  if (!running_) rests_ = stays_ = false;
   for (size_t c = 0; c < acceleration_.size(); ++c) {
-    acceleration_[c] = dofs_.inverse_mass()[c] * state.f[c] +
-                       (dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c]);
+    const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
+    acceleration_[c] = rests_ ? 0 : dofs_.inverse_mass()[c] * state.f[c] + gravity;
   }
-  if (rests_) std::ranges::fill(acceleration_, 0.);
-  if (!running_) {
-    ticks_ = automatic_ ? kFirst : 1;
-    phase_from_ = state.step;
-  }
+  if (running_) return;
+  ticks_ = automatic_ ? kFirst : 1;
+  phase_from_ = state.step;
+}
+
+std::int64_t ImplicitSteps::try_step(State& state, const StepControl& control, std::int64_t most) {
+  begin(state);
   const double dt = control.choice().step;
-  const double fit = longest(state) / dt;
-  if (fit < static_cast<double>(most)) most = std::max<std::int64_t>(1, std::int64_t(fit));
+  most = std::clamp<std::int64_t>(std::int64_t(std::min(longest(state) / dt, 1e15)), 1, most);
   for (;;) {
     // The ticks that are left are shared out evenly.
     const std::int64_t wanted = fixed_ ? 1 : std::clamp<std::int64_t>(ticks_, 1, most);
-    const std::int64_t parts = (most + wanted - 1) / wanted, ticks = (most + parts - 1) / parts;
+    const std::int64_t parts = (most + wanted - 1) / wanted;
+    const std::int64_t ticks = fixed_ ? 1 : (most + parts - 1) / parts;
     h_ = static_cast<double>(ticks) * dt;
+    const std::int64_t iterations = equilibrium_.iterations();
     const bool found = attempt(state, control.time_after(before_, ticks));
+    counts_.iterations += equilibrium_.iterations() - iterations;
     const double off = found ? error() : HUGE_VAL;
-    const double share = found ? kReserve / std::sqrt(std::max(off, 1e-30)) : 1 / kMostShorter;
-    const bool shortest = ticks == 1 || fixed_;
-    if (found && (off <= 1 || shortest)) {
-      const auto next = static_cast<std::int64_t>(static_cast<double>(ticks) *
-                                                  std::clamp(share, 1 / kMostShorter, kMostLonger));
-      ticks_ =
-          std::max<std::int64_t>(ticks < ticks_ && share >= 1 ? std::max(next, ticks_) : next, 1);
-      if (automatic_ && ticks_ < kWorth) {
-        // The step is good, and the next one is velocity Verlet's.
-        give_up(before_.step + ticks);
-      } else if (!running_) {
-        ++counts_.phases;
-        running_ = begins_ = true;
-      }
-      ++counts_.steps;
-      counts_.ticks += ticks;
-      counts_.iterations = equilibrium_.iterations();
+    const bool good = found && (off <= 1 || ticks == 1);
+    const double share = found ? kReserve / std::sqrt(off) : 0;
+    const double longer = std::clamp(share, 1 / kMostShorter, good ? kMostLonger : kLessAgain);
+    ticks_ = std::max<std::int64_t>(1, std::int64_t(static_cast<double>(ticks) * longer));
+    if (good) {
+      accept(ticks);
       return ticks;
     }
     ++counts_.rejected;
-    if (shortest) break;
-    ticks_ = std::max<std::int64_t>(
-        1, std::int64_t(static_cast<double>(ticks) * std::clamp(share, 1 / kMostShorter, .5)));
-    if (automatic_ && ticks_ < kWorth) break;
+    if (ticks == 1 || (automatic_ && ticks_ < kWorth)) break;
   }
   state = before_;
-  if (automatic_) {
-    give_up(before_.step);
-    return 0;
+  if (!automatic_) refuse();
+  give_up(before_.step);
+  return 0;
+}
+
+void ImplicitSteps::accept(std::int64_t ticks) {
+  ++counts_.steps;
+  counts_.ticks += ticks;
+  if (automatic_ && ticks_ < kWorth) {
+    give_up(before_.step + ticks);  // after this step
+  } else if (!running_) {
+    ++counts_.phases;
+    running_ = begins_ = true;
   }
+}
+
+void ImplicitSteps::refuse() const {
   if (refused_) throw Unstable(*refused_);
   throw Unstable(fmt::format(
       "Newton's method finds no places at the end of a step of {:.3g} s {}: {}", h_,

@@ -66,6 +66,9 @@ class ImplicitSteps {
   void fields(Archive& archive);
 
  private:
+  void begin(const State& state);
+  void accept(std::int64_t ticks);
+  [[noreturn]] void refuse() const;
   [[nodiscard]] double longest(const State& state) const;
   bool attempt(State& state, double time);
   [[nodiscard]] double error() const;

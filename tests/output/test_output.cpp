@@ -306,7 +306,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
   CHECK(
       content(folder / "energy.csv")
           .starts_with("time [s],kinetic [J],strain [J],contact [J],gravity [J],friction_loss [J],"
-                       "damping_loss [J],external_work [J],total_error [J]\n"));
+                       "damping_loss [J],numerical_loss [J],external_work [J],total_error [J]\n"));
   CHECK(content(folder / "momentum.csv")
             .starts_with("time [s],px [kg m/s],py [kg m/s],angular [kg m^2/s],px_error [kg m/s],"
                          "py_error [kg m/s],angular_error [kg m^2/s]\n"));
