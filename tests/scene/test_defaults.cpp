@@ -143,6 +143,7 @@ std::vector<Default> settings_defaults() {
       {"/properties/time/properties/mode", rectangle(), "/time/mode", "static"},
       {"/properties/time/properties/load_steps", statics, "/time/load_steps", 5},
       {"/properties/time/properties/tolerance", statics, "/time/tolerance", 1e-5},
+      {"/properties/time/properties/scheme", rigid(), "/time/scheme", "auto"},
       {"/properties/time/properties/step", rigid(), "/time/step", 1e-5},
       {"/properties/time/properties/start", rigid(), "/time/start", "settled"},
       {"/properties/time/properties/accuracy", rigid(), "/time/accuracy", 1e-3},
