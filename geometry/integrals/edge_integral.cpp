@@ -159,7 +159,7 @@ OverlapBounds overlap_bounds(const PlacedPotential& p, const PlacedPotential& q,
   include_edges(p, edges_p, edges_q, reach, in_q, box);
   const bool partly = include_edges(q, edges_q, edges_p, reach, in_p, box);
   box = box.grown(slack);
-  const double diagonal = std::hypot(box.x1 - box.x0, box.y1 - box.y0);
+  const double diagonal = Vec2(box.x1 - box.x0, box.y1 - box.y0).norm();
   return {box, partly ? diagonal : std::numeric_limits<double>::infinity()};
 }
 

@@ -69,8 +69,7 @@ void BlockFactors<B>::analyse(int size, std::vector<std::pair<int, int>> pairs) 
     if (row > column) std::swap(row, column);
   }
   std::ranges::sort(pairs);
-  const auto same = std::ranges::unique(pairs);
-  pairs.erase(same.begin(), same.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   order(pairs);
   for (auto& [row, column] : pairs) {
     row = place_[static_cast<size_t>(row)], column = place_[static_cast<size_t>(column)];

@@ -39,7 +39,7 @@ struct LinearSolver::Factors {
   decltype(auto) use(const F& f) {
     return points ? f(of_points) : f(of_bodies);
   }
-  [[nodiscard]] int breadth() const { return points ? 2 : 3; }
+  [[nodiscard]] size_t breadth() const { return points ? 2 : 3; }
 
   // Numbers the blocks that have a coordinate of the system.
   void number(std::span<const std::uint8_t> moves, size_t rigid) {
@@ -57,15 +57,14 @@ struct LinearSolver::Factors {
       number_block(c, count);
       c += count;
     }
-    parts.resize(static_cast<size_t>(size * breadth()));
+    parts.resize(static_cast<size_t>(size) * breadth());
   }
   void number_block(size_t first, size_t count) {
     const auto moves = [&](size_t i) { return i < count && moved[first + i] != 0; };
-    const auto breadth_now = static_cast<size_t>(breadth());
     bool any = false;
     for (size_t i = 0; i < count; ++i) any = any || moves(i);
     if (!any) return;
-    for (size_t i = 0; i < breadth_now; ++i) {
+    for (size_t i = 0; i < breadth(); ++i) {
       const Slot slot{size, static_cast<int>(i)};
       if (moves(i)) {
         slots[first + i] = slot;
@@ -139,7 +138,8 @@ bool LinearSolver::factorise(const Tangent& tangent, size_t rigid,
 void LinearSolver::solve(std::span<const double> b, std::span<double> x) const {
   Factors& f = *factors_;
   const auto part = [&](const Factors::Slot& slot) -> double& {
-    return f.parts[static_cast<size_t>(f.breadth() * slot.block + slot.offset)];
+    return f
+        .parts[f.breadth() * static_cast<size_t>(slot.block) + static_cast<size_t>(slot.offset)];
   };
   std::ranges::fill(f.parts, 0.);
   for (size_t c = 0; c < f.slots.size(); ++c) {
