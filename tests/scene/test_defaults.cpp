@@ -92,7 +92,7 @@ std::string digest(const Scene& s) {
   for (const Expectation& e : s.expectations) add(int(e.take));
   const TimeSettings& t = s.time;
   add(t.statics, t.load_steps, t.tolerance, t.fixed_step.value_or(0), t.settled, t.accuracy,
-      t.onsets);
+      t.onsets, static_cast<int>(t.scheme));
   add(s.output.frames, s.output.checkpoint_interval.value_or(0));
   return text;
 }
