@@ -252,7 +252,7 @@ TEST_CASE("piles settle at any stiffness, with friction and without", "[newton]"
         const double weight = model.bodies[i].mass * 9.81;
         const auto force = simulation.state().force(static_cast<RigidIndex>(i));
         // Two units in the last place of a position of 4 m are 1.8e-15 m. The stiffness of a
-        // contact is k_n times its length over both inradii, up to 6 k_n here.
+        // contact is k_n times its length over both inradii, about 6 k_n here.
         const double allowed = 1e-6 * weight + 1e-14 * stiffness;
         CHECK(std::abs(force[1] - weight) < allowed);
         CHECK(std::abs(force[0]) < allowed);
