@@ -141,7 +141,7 @@ void ImplicitSteps::accept(std::int64_t ticks) {
     give_up(before_.step + ticks);  // after this step
   } else if (!running_) {
     ++counts_.phases;
-    running_ = begins_ = true;
+    running_ = true;
   }
 }
 
@@ -159,7 +159,7 @@ void ImplicitSteps::refuse() const {
 void ImplicitSteps::give_up(std::int64_t step) {
   const bool lasted = step - phase_from_ >= wait_;
   rests_ = stays_ = false;
-  wait_ = lasted ? kFirstWait : std::min(2 * wait_, kLongestWait);
+  wait_ = std::max(least_wait_, lasted ? kFirstWait : std::min(2 * wait_, kLongestWait));
   next_try_ = step + wait_;
   running_ = false;
 }
@@ -183,18 +183,19 @@ void ImplicitSteps::balance_spins(State& state) const {
   }
 }
 
-void ImplicitSteps::follow(const State& state, double dt, const Energies& before,
-                           const Energies& e) {
+void ImplicitSteps::follow(const State& state, double dt, const Energies& e) {
   if (!automatic_ || !running_) return;
-  if (begins_) {
-    begins_ = false;
-    loss_from_ = before.numerical_loss;
-    work_from_ = before.external_work - before.gravity;
-  }
   const double work = e.external_work - e.gravity;
   const double still = accuracy_ * accuracy_ * (e.strain + e.contact);
   const double allowed = std::max(unnoticed_, still) + accuracy_ * std::abs(work - work_from_);
-  if (e.numerical_loss - loss_from_ > allowed || !is_quiet(state, dt)) give_up(state.step);
+  const bool spent = e.numerical_loss - loss_from_ > allowed;
+  if (spent) {
+    loss_from_ = e.numerical_loss;
+    work_from_ = work;
+    // Vibrations must not be drained little by little.
+    least_wait_ = std::max(2 * least_wait_, kFirstWait);
+  }
+  if (spent || !is_quiet(state, dt)) give_up(state.step);
 }
 
 // One step of h_ that ends at `time`.
@@ -276,7 +277,8 @@ const State& ImplicitSteps::finish(State& state) {
 }
 
 void ImplicitSteps::fields(Archive& archive) {
-  archive("ticks", ticks_)("running", running_)("next_try", next_try_)("wait", wait_);
+  archive("ticks", ticks_)("running", running_)("next_try", next_try_)("wait", wait_)("least_wait",
+                                                                                      least_wait_);
   archive("phase_from", phase_from_)("rests", rests_)("stays", stays_)("loss_from", loss_from_)(
       "work_from", work_from_)("counts", counts_);
 }

@@ -53,10 +53,10 @@ class ImplicitSteps {
   /// state of the middle of the step, with its mean velocities.
   const State& finish(State& state);
   [[nodiscard]] const State& before() const { return before_; }
-  /// After such a step of ticks of dt (s): the energies before and after it, with what it has
-  /// taken. With the scheme `auto` a phase ends that has taken more than motion that nobody
-  /// notices, or where a body moves noticeably.
-  void follow(const State& state, double dt, const Energies& before, const Energies& after);
+  /// After such a step of ticks of dt (s): the energies, with what it has taken. With the scheme
+  /// `auto` a phase ends where a body moves noticeably, or where more has been taken, since a phase
+  /// has last ended for that, than by motion that nobody notices.
+  void follow(const State& state, double dt, const Energies& energies);
   /// Whether the next step is probably an implicit one as well.
   [[nodiscard]] bool running() const { return running_; }
   /// Of the last step, s.
@@ -94,11 +94,11 @@ class ImplicitSteps {
   bool stays_ = false;           // nothing has moved at all, and no force has changed
   std::int64_t next_try_ = 0;    // number of the step from which on another try is made
   std::int64_t wait_;            // steps between tries
+  std::int64_t least_wait_ = 0;  // doubled each time that too much energy has been taken
   std::int64_t phase_from_ = 0;  // number of the step at which this phase has begun
   double unnoticed_ = 0;         // energy that lifts all bodies by what they may be off, J
   double accuracy_;
-  bool begins_ = false;                   // this phase
-  double loss_from_ = 0, work_from_ = 0;  // at the start of this phase, J
+  double loss_from_ = 0, work_from_ = 0;  // when a phase last ended for its energy, J
   ImplicitCounts counts_;
   std::optional<Unstable> refused_;  // why the last step that was tried did not do, if it is known
   // Of the step that is tried.

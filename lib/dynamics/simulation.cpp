@@ -167,7 +167,7 @@ bool Simulation::take_implicit_step(double horizon) {
   if (!implicit_->due(state_, dt)) return false;
   const double left = std::min(std::ceil((horizon - state_.time) / dt - 1e-6), kMostTicks);
   if (implicit_->is_frozen(state_)) return rest(std::max<std::int64_t>(1, std::int64_t(left)));
-  const Energies before = energies();
+  const double error = energies().total_error;
   clock_.start(false);
   const std::int64_t ticks = implicit_->try_step(
       state_, *control_, std::max<std::int64_t>(1, static_cast<std::int64_t>(left)));
@@ -183,8 +183,8 @@ bool Simulation::take_implicit_step(double horizon) {
   for (const auto& term : terms_) term->book(middle, h, ledger_);
   ledger_.book_implicit(implicit_->before(), state_, h);
   damp(h);
-  ledger_.add_numerical_loss(before.total_error - energies().total_error);
-  implicit_->follow(state_, dt, before, energies());
+  ledger_.add_numerical_loss(error - energies().total_error);
+  implicit_->follow(state_, dt, energies());
   if (!implicit_->running()) restore_forces();
   watch(true);
   return true;

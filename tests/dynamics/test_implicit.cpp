@@ -208,3 +208,22 @@ TEST_CASE("implicit steps: heaps come to rest exactly, and stay where velocity V
     CHECK(std::abs(p.y_error) < 1e-7 * impulse);
   }
 }
+
+TEST_CASE("implicit steps: vibrations without damping are not drained little by little",
+          "[implicit]") {
+  SeededRandom random(34);
+  Model model = implicit::heap(random, 2, .0005);
+  model.contact.damping = {};
+  TimeSettings time = implicit::time_of(TimeScheme::automatic, 4);
+  time.accuracy = 1e-2;
+  Simulation simulation(model, time, 40, 1);
+  while (simulation.state().time < time.end - 1e-9) simulation.step(time.end);
+  double unnoticed = 0;  // energy that lifts all blocks by accuracy times their inradii, J
+  for (const RigidBody& body : model.bodies) {
+    if (body.motion == Motion::free) unnoticed += body.mass * 9.81 * time.accuracy * body.inradius;
+  }
+  const auto times = std::log2(static_cast<double>(simulation.state().step) / 512) + 2;
+  CAPTURE(unnoticed, times, simulation.implicit_counts()->phases);
+  CHECK(simulation.energies().numerical_loss < times * unnoticed);
+  CHECK(simulation.implicit_counts()->steps > 0);
+}
