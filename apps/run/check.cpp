@@ -54,7 +54,8 @@ void say_imports(const Scene& scene) {
 
 void say_step(const Scene& scene, const Simulation& simulation) {
   const StepChoice& choice = simulation.step_choice();
-  say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end,
+  const bool phases = scene.time.scheme == TimeScheme::automatic;
+  say("run", fmt::format("{:g} s in {}{:.0f} steps", scene.time.end, phases ? "at most " : "",
                          std::ceil(scene.time.end / choice.step)));
   if (scene.time.statics) {
     say("static",
@@ -91,8 +92,10 @@ void say_run_time(const Scene& scene, const Simulation& simulation, const Trial&
     say("run time", "none: after a few steps, " + trial.message);
     return;
   }
-  say("run time", fmt::format("about {} on one thread, from {} steps of {:.2g} s of wall clock",
-                              duration(run_seconds(scene, simulation, trial)), trial.steps,
+  const bool phases = scene.time.scheme == TimeScheme::automatic;
+  say("run time", fmt::format("about {} on one thread{}, from {} steps of {:.2g} s of wall clock",
+                              duration(run_seconds(scene, simulation, trial)),
+                              phases ? " if it goes on as it begins" : "", trial.steps,
                               trial.seconds / static_cast<double>(trial.steps)));
 }
 
@@ -149,6 +152,8 @@ int check_command(const CheckOptions& options) {
         fmt::format("[{:g}, {:g}] m/s^2{}", model.gravity.x(), model.gravity.y(), factors));
   }
   say_step(scene, *simulation);
+  const Phases phases = phases_of(scene, *simulation, estimates.dissipates);
+  if (!phases.text.empty()) say("phases", phases.text);
   if (estimates.trial) say_run_time(scene, *simulation, *estimates.trial);
   say_output(scene, estimates.empty_history);
   say("expects", fmt::format("{} results", scene.expectations.size()));

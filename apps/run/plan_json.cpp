@@ -1,5 +1,7 @@
 #include "apps/run/plan_json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -144,12 +146,42 @@ PlanEstimates estimates_of(const Scene& scene) {
       std::ranges::any_of(model.materials, [](const Material& m) {
         return m.mass_damping > 0 || m.stiffness_damping > 0;
       });
+  estimates.dissipates = estimates.damped || model.contact.friction.coefficient > 0 ||
+                         std::ranges::any_of(model.contact.rules, [](const ContactRule& r) {
+                           return r.friction && r.friction->coefficient > 0;
+                         });
   estimates.empty_history = scene.model.regions.empty() && output.track.empty() &&
                             output.track_deformables.empty() && output.points.empty() &&
                             output.track_surfaces.empty();
   estimates.warnings = scene.warnings;
   std::ranges::move(unlikely_values(scene), std::back_inserter(estimates.warnings));
   return estimates;
+}
+
+Phases phases_of(const Scene& scene, const Simulation& simulation, bool dissipates) {
+  Phases phases;
+  if (scene.time.scheme != TimeScheme::automatic) return phases;
+  const QuietMotion quiet(scene.model, simulation.degrees_of_freedom(), scene.time.accuracy);
+  const double step = simulation.step_size();
+  const double landing = simulation.forecast().last_landing;
+  // A body that sets out to fall hardly moves at first.
+  phases.from_start =
+      landing <= QuietMotion::kSteps * step && quiet.holds(simulation.state(), step);
+  if (phases.from_start) {
+    phases.text =
+        "implicit steps from the start, where no body moves noticeably; velocity Verlet once one "
+        "does";
+    return phases;
+  }
+  phases.until = landing;
+  phases.text = "velocity Verlet while bodies move";
+  if (phases.until > 0) {
+    phases.text +=
+        fmt::format(", at least to t = {:.3g} s, when the last one has fallen", phases.until);
+  }
+  phases.text += dissipates ? "; implicit steps where they have come to rest"
+                            : "; nothing takes the energy of impacts, so that they may never rest";
+  return phases;
 }
 
 double run_seconds(const Scene& scene, const Simulation& simulation, const Trial& trial) {
@@ -182,6 +214,10 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
   json["contacts_at_start"] = simulation.counts().touching_now;
   json["terms"] = terms;
   json["output"] = output(scene.output, scene.time.end);
+  if (const Phases phases = phases_of(scene, simulation, estimates.dissipates);
+      !phases.text.empty()) {
+    json["phases"] = {{"implicit_from_start", phases.from_start}, {"verlet_until", phases.until}};
+  }
   if (estimates.trial) json["run_time"] = run_time(scene, simulation, *estimates.trial);
   const Forecast forecast = simulation.forecast();
   json["expected_penetration"] = {{"by_weight", depth(model, forecast.by_weight)},

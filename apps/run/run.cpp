@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -90,6 +91,18 @@ void print_summary(const Run& run) {
     fmt::print("  {} {:<24} {:>18.10g}   expected {:.10g} +- {:.2g}\n",
                outcome.met ? "ok    " : "MISSED", e.quantity, outcome.value, e.value, e.tolerance);
   }
+}
+
+// Time that another scheme would probably have saved, where it is worth a word.
+void print_saving(const Run& run) {
+  constexpr double kMostly = .5, kWorth = .5;  // s
+  const double share = run.quiet_share().value_or(0);
+  const double saved = share * (run.seconds() - run.output_seconds());
+  if (run.status() != Run::Status::done || share < kMostly || saved < kWorth) return;
+  fmt::print(
+      "at rest, or nearly, in {:.0f} % of the steps: with \"scheme\": \"auto\" in \"time\" the run "
+      "would have taken about {:.2g} s less, see docs/how-to/rest.md\n",
+      100 * share, saved);
 }
 
 // Those from number `first` on. Returns how many there are.
@@ -262,6 +275,7 @@ int run_command(const RunOptions& options) {
     print_json(run);
   } else if (!options.quiet) {
     print_summary(run);
+    print_saving(run);
   }
   std::fflush(stdout);
   if (!options.json) print_warnings(run, known);

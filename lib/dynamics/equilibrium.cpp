@@ -35,7 +35,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       contact_(contact),
       tolerance_(tolerance),
       first_(dofs.layout().node(0)),
-      shortest_(HUGE_VAL),
+      lengths_(model, dofs.layout()),
       lambda_(model.bodies.size()),
       body_loads_(model.bodies.size() + model.deformables.size()),
       body_loads_now_(body_loads_.size()) {
@@ -53,23 +53,19 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   outside_.assign(n - first_, 0);
   Box scene;
   for (const DeformableBody& body : model.deformables) {
-    shortest_ = std::min(shortest_, mesh_quality(body.mesh).shortest_edge);
     scene.include(box_of(body.mesh.nodes));
   }
   for (const RigidBody& body : model.bodies) {
-    double radius = 0, longest = 0;
+    double longest = 0;
     const Potential& shape = body.potential;
     for (int i = 0; i < shape.size(); ++i) {
       const Vec2& vertex = shape.vertices[i];
-      radius = std::max(radius, vertex.norm());
       longest = std::max(longest, (shape.vertices[shape.next(i)] - vertex).norm());
       scene.include(body.position + vertex);
     }
-    radius_.push_back(radius);
     flat_.push_back(2 * model.stiffness() * body.potential.steepest * longest);
-    if (body.motion == Motion::free || body.servo) shortest_ = std::min(shortest_, body.inradius);
     if (body.servo) {
-      const auto wall = static_cast<RigidIndex>(radius_.size()) - 1;
+      const auto wall = static_cast<RigidIndex>(flat_.size()) - 1;
       walls_.push_back(wall);
       rails_.push_back({wall, body.servo->direction});
       for (const size_t axis : {0, 1}) pushed_[dofs.layout().rigid(wall) + axis] = 1;
@@ -126,7 +122,7 @@ void Equilibrium::find_slip(const State& state) {
   double fastest = 0;
   for (size_t c = 0; c < state.v.size(); ++c) {
     const bool turns = c < first_ && c % 3 == 2;
-    fastest = std::max(fastest, std::abs(state.v[c]) * (turns ? radius_[c / 3] : 1));
+    fastest = std::max(fastest, std::abs(state.v[c]) * (turns ? radius()[c / 3] : 1));
   }
   slip_.clear();
   if (fastest == 0) return;
@@ -239,13 +235,13 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
 bool Equilibrium::rigid_balanced(const State& state, RigidIndex b, double contact,
                                  LoadStep& result) {
   const size_t c = state.layout.rigid(b);
-  const double force = hypotenuse(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius_[b];
+  const double force = hypotenuse(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius()[b];
   const RigidBody& body = model_.bodies[b];
   const double own = body.servo ? std::abs(body.servo->force * body.servo->history.at(state.time))
                                 : hypotenuse(weight(c), weight(c + 1));
   result.load += own;
   sum_loads_ += own * own;
-  const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius_[b];
+  const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius()[b];
   const double noise = kRigidNoise * place * (stiffness_.rigid[c] + lambda_[b] * body.mass);
   return note_balance(b, force + std::abs(moment), own + contact, force * force + moment * moment,
                       noise * noise, result);

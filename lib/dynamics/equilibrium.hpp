@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "lib/dynamics/quiet_motion.hpp"
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/term.hpp"
 #include "lib/model/model.hpp"
@@ -46,10 +47,8 @@ class Equilibrium {
   [[nodiscard]] const std::vector<double>& forces() const { return rest_; }
   /// Of Newton's method in all steps so far.
   [[nodiscard]] std::int64_t iterations() const { return iterations_; }
-  /// The shortest length of a body that tells how exactly a coordinate is known: a rigid body's
-  /// inradius (as an angle, over its radius), for nodes the shortest edge of the elements; m or
-  /// rad.
-  [[nodiscard]] double length(size_t coordinate) const;
+  /// How exactly coordinates are known.
+  [[nodiscard]] const Lengths& lengths() const { return lengths_; }
   /// The loads of the last evaluation have been there before the first load step.
   void begin_loaded() { outside_ = loads(); }
 
@@ -126,6 +125,7 @@ class Equilibrium {
   [[nodiscard]] bool held(size_t coordinate) const {
     return (!dofs_.can_move(coordinate) && !pushed_[coordinate]) || spins_[coordinate];
   }
+  [[nodiscard]] const std::vector<double>& radius() const { return lengths_.radius(); }
   [[nodiscard]] double weight(size_t coordinate) const {
     return dofs_.weight().empty() ? 0 : dofs_.weight()[coordinate];
   }
@@ -147,7 +147,7 @@ class Equilibrium {
   std::vector<Rail> rails_;           // of these, then of bodies that slide
   std::vector<std::uint8_t> spins_;   // 1: angles that turn as given, and are not sought
   std::vector<std::uint8_t> pushed_;  // 1: coordinates of their places
-  double shortest_;                   // edge of the elements, or inradius of a free rigid body, m
+  Lengths lengths_;
   NodeStiffness stiffness_;
   std::vector<double> mass_, inverse_;    // scaled; inverse 0 where held
   std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
@@ -163,7 +163,6 @@ class Equilibrium {
   std::optional<NewtonPath> newton_pause_;
   std::int64_t iterations_ = 0;
   std::vector<double> lambda_;  // of rigid bodies: stiffness / inertia, 1/s^2
-  std::vector<double> radius_;  // of rigid bodies, m
   std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m
   double far_ = 0;              // m
   double loads_ = 0;            // largest norm in an equilibrium so far, N

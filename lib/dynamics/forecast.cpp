@@ -16,10 +16,11 @@ namespace {
 // A body as the formulas see it.
 struct Block {
   double mass, density;
-  double breadth;             // of the side on which it lands, m
-  double wave = HUGE_VAL;     // pressure of its strongest elastic wave per speed, Pa s/m
-  double tangent = HUGE_VAL;  // of half the sharpest angle; infinite if not known
-  double speed;               // of its fastest point, without a fall, m/s
+  double breadth;                // of the side on which it lands, m
+  double wave = HUGE_VAL;        // pressure of its strongest elastic wave per speed, Pa s/m
+  double tangent = HUGE_VAL;     // of half the sharpest angle; infinite if not known
+  double speed;                  // of its fastest point, without a fall, m/s
+  Vec2 velocity = Vec2::Zero();  // of its mass centre
   bool free;
   double top = 0, bottom = 0;  // along gravity, m
   double left = 0, right = 0;  // across it
@@ -68,7 +69,9 @@ class Blocks {
       const double sine = std::isfinite(b.tangent) ? b.tangent / hypotenuse(1, b.tangent) : 1;
       const double at_corner = softest * (partner + sine * slopes[i]);
       note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
-      const double v = hypotenuse(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
+      const double height = fall(b);
+      result.last_landing = std::max(result.last_landing, fall_time(b, height));
+      const double v = hypotenuse(b.speed, std::sqrt(2 * g_ * height)) + fastest_;
       const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
       note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
            cube_root(3 * energy / (b.tangent * at_corner)), i, result.by_speed);
@@ -82,6 +85,7 @@ class Blocks {
             .density = model_.materials[body.material].density,
             .breadth = 0,
             .speed = body.velocity.norm(),
+            .velocity = body.velocity,
             .free = body.motion == Motion::free};
     double radius = 0;
     const std::vector<Vec2>& v = body.potential.vertices;
@@ -122,6 +126,7 @@ class Blocks {
             .breadth = 0,
             .wave = wave,
             .speed = body.velocity.norm(),
+            .velocity = body.velocity,
             .free = body.supports.empty()};
     double radius = 0;
     for (const Vec2& x : body.mesh.nodes) {
@@ -187,6 +192,13 @@ class Blocks {
       }
     }
     return std::isfinite(gap) ? gap : 0;
+  }
+
+  // How long a fall of a height (m) takes, s.
+  [[nodiscard]] double fall_time(const Block& b, double height) const {
+    if (!(height > 0)) return 0;
+    const double down = b.velocity.dot(down_);
+    return (std::sqrt(down * down + 2 * g_ * height) - down) / g_;
   }
 
   const Model& model_;

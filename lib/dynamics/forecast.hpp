@@ -1,4 +1,5 @@
-// What a run will probably see, from closed formulas: how deep bodies press into each other.
+// What a run will probably see, from closed formulas: how deep bodies press into each other, and
+// how long they fall.
 #pragma once
 
 #include <span>
@@ -25,6 +26,9 @@ struct Forecast {
   /// onto what lies below: the energy of contact is m v^2 / 2. A body with a mesh presses with no
   /// more than the pressure of its elastic wave, density c v.
   ExpectedDepth by_speed;
+  /// When the last body has fallen freely onto what lies below it, from its speed at the start, s;
+  /// 0 if none falls.
+  double last_landing = 0;
 };
 
 /// `slopes`: 1/r of the potential of each body, rigid ones first, 1/m.

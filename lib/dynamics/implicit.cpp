@@ -11,8 +11,7 @@ namespace apothem {
 namespace {
 
 // Implicit steps are worth it from so many ticks on, and are tried with twice as many.
-constexpr std::int64_t kWorth = 8;
-constexpr std::int64_t kFirst = 2 * kWorth;
+constexpr std::int64_t kFirst = QuietMotion::kSteps, kWorth = kFirst / 2;
 constexpr std::int64_t kLookEvery = 64;  // ticks between looks whether to try
 constexpr std::int64_t kFirstWait = 512, kLongestWait = 1 << 16;
 constexpr double kFarthest = .2;  // of an inradius, which a step may lead over
@@ -32,6 +31,7 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
       terms_(terms),
       contact_(contact),
       equilibrium_(model, dofs, terms, contact, 0),
+      quiet_(model, dofs, time.accuracy),
       automatic_(time.scheme == TimeScheme::automatic),
       fixed_(time.fixed_step.has_value()),
       wait_(kFirstWait),
@@ -39,35 +39,11 @@ ImplicitSteps::ImplicitSteps(const Model& model, const TimeSettings& time, Degre
   const size_t size = dofs.layout().size();
   acceleration_.assign(size, 0);
   base_.assign(size, 0);
-  for (size_t c = 0; c < size; ++c) {
-    const bool angle = c < dofs.layout().node(0) && c % 3 == 2;
-    const double length = equilibrium_.length(angle ? c - 2 : c);
-    const double part = equilibrium_.length(c) / length;
-    way_.push_back(time.accuracy * length * part);
-    if (!angle && dofs.can_move(c)) {
-      unnoticed_ += dofs.mass(c) * model.strongest_gravity() * way_.back() / 2;  // x and y
-    }
-    const double fall = 2 * model.strongest_gravity() * time.accuracy * length;
-    speed_.push_back(fall > 0 ? std::sqrt(fall) * part : HUGE_VAL);
-  }
 }
 
 bool ImplicitSteps::due(const State& state, double dt) const {
   if (!automatic_ || running_) return true;
-  return state.step >= next_try_ && state.step % kLookEvery == 0 && is_quiet(state, dt);
-}
-
-// Whether no body would move noticeably in the first step of a phase, nor fast enough to bounce
-// noticeably.
-bool ImplicitSteps::is_quiet(const State& state, double dt) const {
-  const double h = static_cast<double>(kFirst) * dt;
-  for (size_t c = 0; c < state.v.size(); ++c) {
-    const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[c];
-    const double a = dofs_.inverse_mass()[c] * state.f[c] + gravity;
-    const double v = std::abs(state.v[c]) + h * std::abs(a);
-    if (v * h > way_[c] || v > speed_[c]) return false;
-  }
-  return true;
+  return state.step >= next_try_ && state.step % kLookEvery == 0 && quiet_.holds(state, dt);
 }
 
 bool ImplicitSteps::is_frozen(const State& state) const {
@@ -85,7 +61,7 @@ void ImplicitSteps::count_rest(std::int64_t ticks) {
 double ImplicitSteps::longest(const State& state) const {
   double fastest = 0;
   for (size_t c = 0; c < state.v.size(); ++c) {
-    fastest = std::max(fastest, std::abs(state.v[c]) / equilibrium_.length(c));
+    fastest = std::max(fastest, std::abs(state.v[c]) / equilibrium_.lengths().of(c));
   }
   return kFarthest / fastest;
 }
@@ -187,7 +163,7 @@ void ImplicitSteps::follow(const State& state, double dt, const Energies& e) {
   if (!automatic_ || !running_) return;
   const double work = e.external_work - e.gravity;
   const double still = accuracy_ * accuracy_ * (e.strain + e.contact);
-  const double allowed = std::max(unnoticed_, still) + accuracy_ * std::abs(work - work_from_);
+  const double allowed = std::max(quiet_.energy(), still) + accuracy_ * std::abs(work - work_from_);
   const bool spent = e.numerical_loss - loss_from_ > allowed;
   if (spent) {
     loss_from_ = e.numerical_loss;
@@ -195,7 +171,7 @@ void ImplicitSteps::follow(const State& state, double dt, const Energies& e) {
     // Vibrations must not be drained little by little.
     least_wait_ = std::max(2 * least_wait_, kFirstWait);
   }
-  if (spent || !is_quiet(state, dt)) give_up(state.step);
+  if (spent || !quiet_.holds(state, dt)) give_up(state.step);
 }
 
 // One step of h_ that ends at `time`.
@@ -229,7 +205,8 @@ double ImplicitSteps::error() const {
     if (!dofs_.can_move(c)) continue;
     const double change = equilibrium_.forces()[c] * dofs_.inverse_mass()[c] - acceleration_[c];
     const double speed = h_ * std::abs(change);
-    worst = std::max({worst, h_ * speed / way_[c], (speed / speed_[c]) * (speed / speed_[c])});
+    worst = std::max(
+        {worst, h_ * speed / quiet_.way(c), (speed / quiet_.speed(c)) * (speed / quiet_.speed(c))});
   }
   return worst;
 }
@@ -238,7 +215,8 @@ double ImplicitSteps::error() const {
 double ImplicitSteps::farthest(const State& state) const {
   double farthest = 0;
   for (size_t c = 0; c < base_.size(); ++c) {
-    farthest = std::max(farthest, std::abs(state.x[c] - before_.x[c]) / equilibrium_.length(c));
+    farthest =
+        std::max(farthest, std::abs(state.x[c] - before_.x[c]) / equilibrium_.lengths().of(c));
   }
   return farthest;
 }

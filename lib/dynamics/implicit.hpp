@@ -13,6 +13,7 @@
 
 #include "lib/archive/archive.hpp"
 #include "lib/dynamics/equilibrium.hpp"
+#include "lib/dynamics/quiet_motion.hpp"
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/step_control.hpp"
 #include "lib/dynamics/term.hpp"
@@ -74,7 +75,6 @@ class ImplicitSteps {
   [[nodiscard]] double error() const;
   [[nodiscard]] double farthest(const State& state) const;
   [[nodiscard]] bool is_balanced(const State& state) const;
-  [[nodiscard]] bool is_quiet(const State& state, double dt) const;
   void balance_spins(State& state) const;
   void give_up(std::int64_t step);
 
@@ -83,9 +83,7 @@ class ImplicitSteps {
   const Terms& terms_;
   ContactTerm* contact_;
   Equilibrium equilibrium_;
-  // What a coordinate may be off after a step, m or rad, and its velocity: as much as makes a
-  // difference of that height, m/s or rad/s.
-  std::vector<double> way_, speed_;
+  QuietMotion quiet_;
   bool automatic_;  // velocity Verlet is taken between
   bool fixed_;      // the steps are one tick each
   std::int64_t ticks_ = 1;
@@ -96,7 +94,6 @@ class ImplicitSteps {
   std::int64_t wait_;            // steps between tries
   std::int64_t least_wait_ = 0;  // doubled each time that too much energy has been taken
   std::int64_t phase_from_ = 0;  // number of the step at which this phase has begun
-  double unnoticed_ = 0;         // energy that lifts all bodies by what they may be off, J
   double accuracy_;
   double loss_from_ = 0, work_from_ = 0;  // when a phase last ended for its energy, J
   ImplicitCounts counts_;

@@ -70,11 +70,8 @@ double Equilibrium::shortened(const std::vector<double>& step) const {
 }
 
 // How far a coordinate moves in one iteration, so that no contact is jumped over, m or rad.
-double Equilibrium::reach(size_t c) const { return (c < first_ ? kReach : kNodeReach) * length(c); }
-
-double Equilibrium::length(size_t c) const {
-  if (c >= first_) return shortest_;
-  return model_.bodies[c / 3].inradius / (c % 3 == 2 ? radius_[c / 3] : 1);
+double Equilibrium::reach(size_t c) const {
+  return (c < first_ ? kReach : kNodeReach) * lengths_.of(c);
 }
 
 // The first shift: with it nothing moves farther than its reach by the forces out of balance.
@@ -272,7 +269,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
 bool Equilibrium::is_round_off(const State& state, const std::vector<double>& step) const {
   for (size_t c = 0; c < step.size(); ++c) {
     double place = std::abs(state.x[c]);
-    if (c < first_) place += radius_[c / 3] / (c % 3 == 2 ? radius_[c / 3] : 1);
+    if (c < first_) place += radius()[c / 3] / (c % 3 == 2 ? radius()[c / 3] : 1);
     if (std::abs(step[c]) > kRoundedPlaces * place) return false;
   }
   return true;

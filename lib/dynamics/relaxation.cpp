@@ -49,7 +49,7 @@ double Equilibrium::ramp(double from, double until) const {
     longest = std::max(longest,
                        hypotenuse(b[0] - a[0], b[1] - a[1]) + body.reach() * std::abs(b[2] - a[2]));
   }
-  return std::max(kRamp, std::ceil(longest / (kStride * shortest_)));
+  return std::max(kRamp, std::ceil(longest / (kStride * lengths_.shortest())));
 }
 
 void Equilibrium::find_masses(const State& state) {
@@ -108,7 +108,7 @@ void Equilibrium::refuse(const State& state, const LoadStep& result) const {
 // Of a node, or of any point of a rigid body.
 double Equilibrium::speed(size_t c) const {
   const double v = std::abs(velocity_[c]);
-  return c < first_ && c % 3 == 2 ? v * radius_[c / 3] : v;
+  return c < first_ && c % 3 == 2 ? v * radius()[c / 3] : v;
 }
 
 void Equilibrium::move(State& state, bool first) {
@@ -129,7 +129,7 @@ void Equilibrium::move(State& state, bool first) {
       fastest = std::max(fastest, speed(c));
     }
   }
-  const double most = kStride * shortest_ / kStep;
+  const double most = kStride * lengths_.shortest() / kStep;
   if (searches_ > 0 && fastest > most) {
     const double slower = most / fastest;
     for (double& v : velocity_) v *= slower;

@@ -41,6 +41,9 @@ Run::Run(Scene scene, const RunSettings& settings)
   rows_ =
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
+  if (scene_.automatic_scheme && scene_.time.scheme == TimeScheme::verlet) {
+    quiet_.emplace(scene_.model, simulation_->degrees_of_freedom(), scene_.time.accuracy);
+  }
   start_ = last_checkpoint_ = Clock::now();
   processor_start_ = processor_time();
   if (folder.empty()) return;
@@ -221,7 +224,10 @@ bool Run::try_step() {
   } else {
     dynamic_step();
   }
-  if (is_look()) look_for_stop();
+  if (is_look()) {
+    look_for_stop();
+    look_for_rest();
+  }
   if (on_step_) on_step_();
   if (ended()) simulation_->check_energy();
   return true;
@@ -298,6 +304,17 @@ void Run::look_for_stop() {
   }
   if (scene_.stops.empty() || !stopped_by_.empty()) return;
   stopped_by_ = stop_watch_.look(state(), simulation_->node_mass(), seconds());
+}
+
+void Run::look_for_rest() {
+  if (!quiet_) return;
+  ++progress_.looks;
+  progress_.quiet_looks += quiet_->holds(state(), simulation_->step_size());
+}
+
+std::optional<double> Run::quiet_share() const {
+  if (!quiet_ || progress_.looks == 0) return {};
+  return static_cast<double>(progress_.quiet_looks) / static_cast<double>(progress_.looks);
 }
 
 void Run::advance(std::optional<double> until) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/dynamics/quiet_motion.hpp"
 #include "lib/dynamics/simulation.hpp"
 #include "lib/output/file_list.hpp"
 #include "lib/output/frames.hpp"
@@ -120,6 +121,9 @@ class Run {
   /// what it has found itself, unless it is unstable (warnings.hpp). They stand in run.json.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
+  /// The share of a run by velocity Verlet in which the scheme "auto" would probably have taken
+  /// implicit steps (QuietMotion); nothing if the scene does not go with it.
+  [[nodiscard]] std::optional<double> quiet_share() const;
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
   /// One for each expectation of the scene, after a run to its end.
   [[nodiscard]] const std::vector<Outcome>& outcomes() const { return outcomes_; }
@@ -154,6 +158,7 @@ class Run {
   void close();
   void judge();
   void look_for_stop();
+  void look_for_rest();
   [[nodiscard]] bool asked_to_stop() const { return settings_.stop_if && settings_.stop_if(); }
   [[nodiscard]] bool checkpoint_due() const;
   void write_checkpoint();
@@ -182,6 +187,7 @@ class Run {
   std::vector<std::string> warnings_;
   std::vector<Outcome> outcomes_;
   std::vector<double> measures_;
+  std::optional<QuietMotion> quiet_;  // watched by velocity Verlet, where "auto" would do
   StopWatch stop_watch_{scene_.model, scene_.stops};
   std::string stopped_by_;
   using Clock = std::chrono::steady_clock;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lib/dynamics/unstable.hpp"
 #include "lib/system/clock.hpp"
 
@@ -89,9 +91,10 @@ Trial try_steps(const Scene& scene, int threads, double seconds) {
   Trial trial;
   const Clock::time_point start = Clock::now();
   try {
+    const double rows = scene.output.history_interval.value_or(scene.time.end / 1000);
     while (trial.seconds < seconds && simulation->state().time < scene.time.end) {
-      simulation->step();
-      ++trial.steps;
+      simulation->step(std::min(scene.time.end, simulation->state().time + rows));
+      trial.steps = simulation->own_steps();
       trial.seconds = seconds_since(start);
     }
   } catch (const Unstable& error) {

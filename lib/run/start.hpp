@@ -33,13 +33,13 @@ std::vector<std::string> describe_forecast(const Simulation& simulation);
 
 /// The steps of a trial and what they took.
 struct Trial {
-  std::int64_t steps = 0;
+  std::int64_t steps = 0;    ///< of velocity Verlet, or in place of which longer ones were taken
   double seconds = 0;        ///< of all steps
   std::string message = {};  ///< why the trial became unstable, else empty
 };
 
-/// Steps through a scene without files for about `seconds` of wall-clock time, or to its end. Not
-/// for static scenes.
+/// Steps through a scene without files, as a run does that writes histories, for about `seconds` of
+/// wall-clock time, or to its end. Not for static scenes.
 Trial try_steps(const Scene& scene, int threads, double seconds);
 
 }  // namespace apothem

@@ -175,6 +175,7 @@ std::string summary_text(const Run& run) {
                         {"iterations", implicit->iterations},
                         {"numerical_loss", simulation.energies().numerical_loss}};
   }
+  if (const std::optional<double> share = run.quiet_share()) json["at_rest"] = *share;
   if (!run.beginning().folder.empty()) json["from"] = beginning(run);
   add_peaks(json, run);
   json["final_state_hash"] = state_hash(state);

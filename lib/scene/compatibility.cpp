@@ -66,4 +66,11 @@ void refuse_incompatible(const JsonReader& in, const UsedFeatures& features) {
   }
 }
 
+bool goes_with(const UsedFeatures& features, Feature other) {
+  return std::ranges::none_of(kIncompatible, [&](const Incompatibility& pair) {
+    return (pair.asked == other && features.uses(pair.with)) ||
+           (pair.with == other && features.uses(pair.asked));
+  });
+}
+
 }  // namespace apothem

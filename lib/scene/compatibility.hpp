@@ -314,5 +314,7 @@ class UsedFeatures {
 /// Throws SceneError for the first row of kIncompatible of which the scene uses both features. A
 /// feature of one body meets features of the same body and of the whole scene.
 void refuse_incompatible(const JsonReader& in, const UsedFeatures& features);
+/// Whether a scene that goes together would do so with another feature of the whole scene as well.
+bool goes_with(const UsedFeatures& features, Feature other);
 
 }  // namespace apothem

@@ -155,6 +155,9 @@ class SceneReader {
     scene_.time.longest_step = scene_.output.history_interval.value_or(scene_.time.end / 1000);
     add_features_of_all_bodies();
     refuse_incompatible(in_, features_);
+    scene_.automatic_scheme = !scene_.time.statics &&
+                              goes_with(features_, Feature::automatic_scheme) &&
+                              goes_with(features_, Feature::implicit_steps);
     if (expect) scene_.expectations = reader.expectations(*expect, scene_.time.end);
     if (measure) scene_.measures = reader.measures(*measure, scene_.time.end, stop_names());
   }

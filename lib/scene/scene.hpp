@@ -18,6 +18,7 @@ struct Scene {
   std::vector<Setting> settings;  ///< that replace values of the file
   Model model;
   TimeSettings time;
+  bool automatic_scheme = false;  ///< whether "scheme": "auto" goes with all that the scene uses
   OutputSettings output;
   std::vector<Expectation> expectations;
   std::vector<StopRule> stops;
