@@ -106,7 +106,7 @@ std::vector<std::pair<double, double>> forces(const Scene& scene) {
 
 TEST_CASE("a tip that is dragged over a floor has mu times the normal force", "[friction][mesh]") {
   Dice dice(42);
-  const int cases = long_run() ? 200 : kSanitized ? 2 : 24;
+  const int cases = long_run() ? 200 : kSanitized ? 2 : 12;
   for (int i = 0; i < cases; ++i) {
     const Kind kind = static_cast<Kind>(i % 3);
     const double degree = std::numbers::pi / 180;
@@ -183,6 +183,7 @@ TEST_CASE("a stool slides down a slope as a point does, and stands below the fri
   for (const bool meshed_body : {false, true}) {
     for (const double steep : {.9, 1.7}) {
       const double foot = dice.between(.02, .14);
+      if (!is_taken(meshed_body != (steep > 1) ? 1 : 0)) continue;
       CAPTURE(meshed_body, steep, foot);
       const Folder folder;
       Run run(scene_of(folder, on_slope(meshed_body, true, steep, foot)), {});

@@ -150,7 +150,7 @@ TEST_CASE("a flat landing has the restitution of a spring and a dashpot that can
 TEST_CASE("impacts of random polygons leave floors of both kinds alike",
           "[friction][damping][slow]") {
   samples::Random random(41);
-  const int cases = long_run() ? 200 : kSanitized ? 1 : 12;
+  const int cases = long_run() ? 200 : kSanitized ? 1 : 6;
   int alike = 0;
   double worst = 0;
   for (int i = 0; i < cases; ++i) {

@@ -105,7 +105,7 @@ TEST_CASE("a solid fraction is met to half a block", "[fill]") {
   CHECK(std::abs(solid - .2 * 16) < M_PI / 8 * .09);
 }
 
-TEST_CASE("size distributions have the moments that they promise", "[fill]") {
+TEST_CASE("size distributions have the moments that they promise", "[fill][slow]") {
   const auto diameters = [](const std::string& diameter) {
     const Model model = model_of(
         R"("shapes": [ { "quadrilateral": {} } ], "count": 2000, "diameter": )" + diameter);
@@ -141,7 +141,7 @@ TEST_CASE("blocks of a fill can have meshes", "[fill]") {
   }
 }
 
-TEST_CASE("Voronoi cells and a dense packing fill a region", "[fill]") {
+TEST_CASE("Voronoi cells and a dense packing fill a region", "[fill][slow]") {
   const Model cells = model_of(R"("arrangement": "voronoi", "count": 50)");
   double area = 0;
   for (const RigidBody& b : cells.bodies) area += b.area;

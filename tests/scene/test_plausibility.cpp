@@ -34,7 +34,7 @@ TEST_CASE("a usual scene has no unlikely values", "[plausibility]") {
   CHECK(found("", "").empty());
 }
 
-TEST_CASE("the shipped scenes have no unlikely values", "[plausibility]") {
+TEST_CASE("the shipped scenes have no unlikely values", "[plausibility][slow]") {
   for (const auto& entry : std::filesystem::directory_iterator(kSource + "/data/scenes")) {
     if (entry.path().extension() != ".json") continue;
     INFO(entry.path());

@@ -368,7 +368,7 @@ TEST_CASE("every kind of broken scene gives one line that names the place", "[sc
   CHECK(error_of_file("/tmp").find("is a directory") != std::string::npos);
 }
 
-TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
+TEST_CASE("the JSON Schema and the reader agree", "[scene][slow]") {
   valijson::Schema schema;
   read_schema(schema);
   CHECK(valid(schema, kGood));

@@ -555,8 +555,9 @@ TEST_CASE("one situation said in many ways gives one result", "[ways][slow]") {
     const Json plain = Json::parse(scene.text);
     const ways::Outcome expected = ways::run(folder, plain, ways::names_of(plain));
     REQUIRE(expected.force > 0);
+    std::uint64_t number = 0;
     for (const ways::Way& way : ways::all_ways(folder)) {
-      if (!way.fits(plain) || (kSanitized && way.tolerance > 0)) continue;
+      if (!is_taken(number++) || !way.fits(plain) || (kSanitized && way.tolerance > 0)) continue;
       CAPTURE(scene.name, way.name);
       Json changed = plain;
       way.change(changed);
@@ -570,7 +571,9 @@ TEST_CASE("one situation said in many ways gives one result", "[ways][slow]") {
 
 TEST_CASE("two scenes of one situation agree", "[ways][slow]") {
   const Folder folder;
+  std::uint64_t number = 0;
   for (const ways::Twins& twins : ways::all_twins()) {
+    if (!is_taken(number++)) continue;
     CAPTURE(twins.name);
     auto one = ways::last_row(folder, twins.one), other = ways::last_row(folder, twins.other);
     for (const char* column : twins.columns) {
