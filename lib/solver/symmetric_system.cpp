@@ -1,0 +1,115 @@
+#include "lib/solver/symmetric_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace apothem {
+namespace {
+
+// Entries are sums of a few parts, each known to some units in its last place.
+constexpr double kRounding = 256 * std::numeric_limits<double>::epsilon();
+constexpr double kUseless = 1e-9;  // residual of a solution, over the size of what is summed up
+constexpr double kAside = 1e-3;    // of a shift, to get away from an eigenvalue
+constexpr int kMostTries = 8;
+
+}  // namespace
+
+SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& system)
+    : rigid_(system.rigid), moves_(system.moves), diagonal_(system.moves.size(), 0) {
+  std::vector<int> place(moves_.size(), -1);
+  for (size_t c = 0; c < moves_.size(); ++c) {
+    if (moves_[c] == 0) continue;
+    place[c] = static_cast<int>(coordinate_.size());
+    coordinate_.push_back(c);
+  }
+  const auto n = static_cast<Eigen::Index>(coordinate_.size());
+  mass_.resize(n);
+  rounding_.setZero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    mass_[i] = system.mass[coordinate_[static_cast<size_t>(i)]];
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Tangent::Entry& e : tangent.entries()) {
+    const int row = place[static_cast<size_t>(e.row)],
+              column = place[static_cast<size_t>(e.column)];
+    if (row < 0 || column < 0) continue;
+    entries.emplace_back(row, column, e.value);
+    rounding_[row] += kRounding * std::abs(e.value) / 2;
+    rounding_[column] += kRounding * std::abs(e.value) / 2;
+  }
+  Eigen::SparseMatrix<double> whole(n, n);
+  whole.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> across = whole.transpose();
+  matrix_ = (whole + across) / 2;
+  const double norm = whole.norm();
+  skew_ = norm > 0 ? (whole - across).eval().norm() / (2 * norm) : 0;
+  for (int column = 0; column < matrix_.outerSize(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it) {
+      tangent_.add(coordinate_[static_cast<size_t>(it.row())],
+                   coordinate_[static_cast<size_t>(column)], it.value());
+    }
+  }
+}
+
+double SymmetricSystem::bound() const {
+  const Vector inverse_root = mass_.cwiseSqrt().cwiseInverse();
+  Vector sums = Vector::Zero(size());
+  for (int column = 0; column < matrix_.outerSize(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it) {
+      sums[it.row()] += std::abs(it.value()) * inverse_root[it.row()] * inverse_root[column];
+    }
+  }
+  return size() > 0 ? sums.maxCoeff() : 0;
+}
+
+bool SymmetricSystem::factorise(const Vector& diagonal) {
+  for (size_t i = 0; i < coordinate_.size(); ++i) {
+    diagonal_[coordinate_[i]] = diagonal[static_cast<Eigen::Index>(i)];
+  }
+  if (!solver_.factorise(tangent_, rigid_, moves_, diagonal_)) return false;
+  // Blocks are eliminated in a fixed order, which may meet one that is nearly singular.
+  Vector b(size());
+  for (Eigen::Index i = 0; i < size(); ++i) b[i] = (1 + 0.37 * std::sin(1. + 7. * double(i)));
+  b = b.cwiseProduct(mass_);
+  const Vector x = solve(b);
+  const Vector left = matrix_ * x + diagonal.cwiseProduct(x);
+  const Vector size_of = matrix_.cwiseAbs() * x.cwiseAbs() +
+                         diagonal.cwiseAbs().cwiseProduct(x.cwiseAbs()) + b.cwiseAbs();
+  return (left - b).norm() <= kUseless * size_of.norm();
+}
+
+SymmetricSystem::Vector SymmetricSystem::solve(const Vector& b) const {
+  std::vector<double> all(moves_.size(), 0);
+  for (size_t i = 0; i < coordinate_.size(); ++i) {
+    all[coordinate_[i]] = b[static_cast<Eigen::Index>(i)];
+  }
+  solver_.solve(all, all);
+  Vector x(size());
+  for (size_t i = 0; i < coordinate_.size(); ++i) {
+    x[static_cast<Eigen::Index>(i)] = all[coordinate_[i]];
+  }
+  return x;
+}
+
+double SymmetricSystem::shift(double by) {
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    if (factorise(-by * mass_)) return by;
+    by *= 1 + kAside;
+  }
+  throw NoModes("the stiffness matrix has no useful factors");
+}
+
+std::vector<double> SymmetricSystem::shape(const Vector& phi) const {
+  Eigen::Index largest = 0;
+  phi.cwiseAbs().maxCoeff(&largest);
+  const double norm = std::sqrt(phi.cwiseProduct(mass_).dot(phi));
+  const double scale = (phi[largest] < 0 ? -1 : 1) / norm;
+  std::vector<double> all(moves_.size(), 0);
+  for (size_t i = 0; i < coordinate_.size(); ++i) {
+    all[coordinate_[i]] = scale * phi[static_cast<Eigen::Index>(i)];
+  }
+  return all;
+}
+
+}  // namespace apothem
