@@ -85,11 +85,12 @@ void note_contacts(const Model& model, Analysis& found) {
   const Linearised& scene = found.scene;
   if (!scene.touching.empty()) {
     const TouchingPair& first = scene.touching.front();
-    add_note(found, fmt::format("{} without pressing on each other, first \"{}\" and \"{}\": such "
-                                "a contact has no stiffness here",
-                                counted(static_cast<int>(scene.touching.size()),
-                                        "pair of bodies touches", "pairs of bodies touch"),
-                                model.name_of(first.a), model.name_of(first.b)));
+    add_note(found,
+             fmt::format("{} without pressing on each other, first \"{}\" and \"{}\": such "
+                         "a contact counts as open, unless rounding makes the outlines overlap",
+                         counted(static_cast<int>(scene.touching.size()), "pair of bodies touches",
+                                 "pairs of bodies touch"),
+                         model.name_of(first.a), model.name_of(first.b)));
   }
   if (scene.friction) add_note(found, "friction counts as sticking in all contacts that press");
 }
@@ -208,28 +209,46 @@ std::string csv_text(const Analysis& found) {
   return text;
 }
 
+bool is_rigid(const SceneMode& mode) { return mode.kind == ModeKind::rigid; }
+
+// The row of modes from `first` to `last`, counted from 1, which have the same frequency.
+void print_row(size_t first, size_t last, const SceneMode& mode,
+               const std::array<double, 2>& share) {
+  const std::string number =
+      first == last ? fmt::format("{}", last) : fmt::format("{}-{}", first, last);
+  const std::string period =
+      std::isfinite(mode.period()) ? fmt::format("{:.6g}", mode.period()) : "-";
+  std::string kind = kModeKinds[static_cast<size_t>(mode.kind)];
+  if (mode.kind == ModeKind::unstable) {
+    kind += fmt::format(", grows like exp({:.6g} t/s)", mode.growth_rate());
+  }
+  fmt::print("{:>5}  {:>14.6g}  {:>12}  {:>6.2f}%  {:>6.2f}%  {}\n", number, mode.frequency(),
+             period, 100 * share[0], 100 * share[1], kind);
+}
+
 void print_vibrations(const Run& run, const Analysis& found) {
   const SceneModes& modes = found.modes;
   fmt::print("{}: modes {} at t = {:.6g} s; {}, {}\n", run.scene().model.name,
              run.scene().time.statics ? "about the equilibrium" : "of the bodies as they begin",
              found.time, counted(modes.coordinates, "free coordinate", "free coordinates"),
              counted(found.scene.contacts, "contact", "contacts"));
-  fmt::print("{:>4}  {:>15}  {:>13}  {:>7}  {:>7}  {}\n", "mode", "frequency [Hz]", "period [s]",
+  fmt::print("{:>5}  {:>14}  {:>12}  {:>7}  {:>7}  {}\n", "mode", "frequency [Hz]", "period [s]",
              "mass x", "mass y", "kind");
   std::array<double, 2> sum{};
   for (size_t i = 0; i < modes.modes.size(); ++i) {
-    const SceneMode& mode = modes.modes[i];
-    const std::string period =
-        std::isfinite(mode.period()) ? fmt::format("{:.6g}", mode.period()) : "-";
-    std::string kind = kModeKinds[static_cast<size_t>(mode.kind)];
-    if (mode.kind == ModeKind::unstable) {
-      kind += fmt::format(", grows like exp(t {:.6g}/s)", mode.growth_rate());
+    // All modes at 0 Hz are one row.
+    size_t last = i;
+    std::array<double, 2> share{};
+    while (last < modes.modes.size() && (last == i || is_rigid(modes.modes[i])) &&
+           is_rigid(modes.modes[last]) == is_rigid(modes.modes[i])) {
+      for (const size_t axis : {0, 1}) share[axis] += modes.modes[last].share[axis];
+      ++last;
     }
-    fmt::print("{:>4}  {:>15.6g}  {:>13}  {:>6.2f}%  {:>6.2f}%  {}\n", i + 1, mode.frequency(),
-               period, 100 * mode.share[0], 100 * mode.share[1], kind);
-    for (const size_t axis : {0, 1}) sum[axis] += mode.share[axis];
+    print_row(i + 1, last, modes.modes[i], share);
+    for (const size_t axis : {0, 1}) sum[axis] += share[axis];
+    i = last - 1;
   }
-  fmt::print("{:>4}  {:>15}  {:>13}  {:>6.2f}%  {:>6.2f}%  of {:.6g} and {:.6g} kg\n", "sum", "",
+  fmt::print("{:>5}  {:>14}  {:>12}  {:>6.2f}%  {:>6.2f}%  of {:.6g} and {:.6g} kg\n", "sum", "",
              "", 100 * sum[0], 100 * sum[1], modes.mass[0], modes.mass[1]);
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "lib/dynamics/touching.hpp"
+#include "lib/model/inradius.hpp"
 
 namespace apothem {
 namespace {
@@ -30,12 +30,19 @@ double unbalance(const Simulation& simulation, const std::vector<double>& out_of
   return loads > 0 ? std::sqrt(off / loads) : 0;
 }
 
+// Penetration in which the rounding of places plays no part, of the smaller inradius.
+constexpr double kPressing = 1e-11;
+
 // The patches that press, and whether one of them has friction.
 void look_at_contacts(const Simulation& simulation, Linearised& scene) {
   const Model& model = simulation.model();
+  const size_t bodies = model.bodies.size() + model.deformables.size();
+  std::vector<double> inradius(bodies);
+  for (size_t b = 0; b < bodies; ++b) inradius[b] = inradius_of(model, static_cast<BodyIndex>(b));
   std::set<std::pair<BodyIndex, BodyIndex>> pressed;
   for (const ContactRecord& contact : simulation.contacts()) {
-    if (!(contact.normal.squaredNorm() > 0)) continue;
+    const double size = std::min(inradius[contact.a], inradius[contact.b]);
+    if (!(contact.penetration > kPressing * size)) continue;
     ++scene.contacts;
     pressed.emplace(std::min(contact.a, contact.b), std::max(contact.a, contact.b));
   }

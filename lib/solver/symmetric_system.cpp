@@ -16,7 +16,7 @@ constexpr int kMostTries = 8;
 }  // namespace
 
 SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& system)
-    : rigid_(system.rigid), moves_(system.moves), diagonal_(system.moves.size(), 0) {
+    : moves_(system.moves) {
   std::vector<int> place(moves_.size(), -1);
   for (size_t c = 0; c < moves_.size(); ++c) {
     if (moves_[c] == 0) continue;
@@ -30,6 +30,7 @@ SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& syst
     mass_[i] = system.mass[coordinate_[static_cast<size_t>(i)]];
   }
   std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 0.);  // so that every pivot has a place
   for (const Tangent::Entry& e : tangent.entries()) {
     const int row = place[static_cast<size_t>(e.row)],
               column = place[static_cast<size_t>(e.column)];
@@ -44,12 +45,7 @@ SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& syst
   matrix_ = (whole + across) / 2;
   const double norm = whole.norm();
   skew_ = norm > 0 ? (whole - across).eval().norm() / (2 * norm) : 0;
-  for (int column = 0; column < matrix_.outerSize(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it) {
-      tangent_.add(coordinate_[static_cast<size_t>(it.row())],
-                   coordinate_[static_cast<size_t>(column)], it.value());
-    }
-  }
+  factors_.analyzePattern(matrix_);
 }
 
 double SymmetricSystem::bound() const {
@@ -64,32 +60,18 @@ double SymmetricSystem::bound() const {
 }
 
 bool SymmetricSystem::factorise(const Vector& diagonal) {
-  for (size_t i = 0; i < coordinate_.size(); ++i) {
-    diagonal_[coordinate_[i]] = diagonal[static_cast<Eigen::Index>(i)];
-  }
-  if (!solver_.factorise(tangent_, rigid_, moves_, diagonal_)) return false;
-  // Blocks are eliminated in a fixed order, which may meet one that is nearly singular.
+  shifted_ = matrix_;
+  shifted_.diagonal() += diagonal;
+  factors_.factorize(shifted_);
+  if (factors_.info() != Eigen::Success) return false;
+  // Coordinates are eliminated in a fixed order, which may meet a pivot that is nearly zero.
   Vector b(size());
-  for (Eigen::Index i = 0; i < size(); ++i) b[i] = (1 + 0.37 * std::sin(1. + 7. * double(i)));
-  b = b.cwiseProduct(mass_);
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    b[i] = mass_[i] * (1 + 0.37 * std::sin(1. + 7. * static_cast<double>(i)));
+  }
   const Vector x = solve(b);
-  const Vector left = matrix_ * x + diagonal.cwiseProduct(x);
-  const Vector size_of = matrix_.cwiseAbs() * x.cwiseAbs() +
-                         diagonal.cwiseAbs().cwiseProduct(x.cwiseAbs()) + b.cwiseAbs();
-  return (left - b).norm() <= kUseless * size_of.norm();
-}
-
-SymmetricSystem::Vector SymmetricSystem::solve(const Vector& b) const {
-  std::vector<double> all(moves_.size(), 0);
-  for (size_t i = 0; i < coordinate_.size(); ++i) {
-    all[coordinate_[i]] = b[static_cast<Eigen::Index>(i)];
-  }
-  solver_.solve(all, all);
-  Vector x(size());
-  for (size_t i = 0; i < coordinate_.size(); ++i) {
-    x[static_cast<Eigen::Index>(i)] = all[coordinate_[i]];
-  }
-  return x;
+  const Vector sizes = shifted_.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs();
+  return (shifted_ * x - b).norm() <= kUseless * sizes.norm();
 }
 
 double SymmetricSystem::shift(double by) {

@@ -1,10 +1,11 @@
 // Private header: a symmetric sparse matrix K in the coordinates that move, with the factors of
-// K + D for diagonals D.
+// K + D for diagonals D. They are Eigen's L D L^T of single entries: a body that nothing holds has
+// pivots near zero, which the inverses of blocks (block_factors.hpp) do not bear.
 #pragma once
 
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
-#include "lib/solver/linear_solver.hpp"
 #include "lib/solver/modes.hpp"
 
 namespace apothem {
@@ -31,8 +32,10 @@ class SymmetricSystem {
   /// Factorises K + D. Returns false if it is singular, or so nearly that solutions are useless.
   [[nodiscard]] bool factorise(const Vector& diagonal);
   /// The number of negative eigenvalues of the last matrix that was factorised.
-  [[nodiscard]] int negative() const { return solver_.negative_pivots(0); }
-  [[nodiscard]] Vector solve(const Vector& b) const;
+  [[nodiscard]] int negative() const {
+    return static_cast<int>((factors_.vectorD().array() < 0).count());
+  }
+  [[nodiscard]] Vector solve(const Vector& b) const { return factors_.solve(b); }
 
   /// Factorises K - shift M, where need be with a shift that is a little larger in size, which it
   /// returns. Throws NoModes.
@@ -44,15 +47,12 @@ class SymmetricSystem {
   [[nodiscard]] std::vector<double> shape(const Vector& phi) const;
 
  private:
-  size_t rigid_;
   std::vector<std::uint8_t> moves_;
   std::vector<size_t> coordinate_;  // of each entry of a vector
-  Tangent tangent_;                 // both halves of K, entry by entry
-  Eigen::SparseMatrix<double> matrix_;
+  Eigen::SparseMatrix<double> matrix_, shifted_;
   Vector mass_, rounding_;
   double skew_ = 0;
-  LinearSolver solver_;
-  std::vector<double> diagonal_;  // D in all coordinates
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
 };
 
 }  // namespace apothem
