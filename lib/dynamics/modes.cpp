@@ -46,7 +46,11 @@ void look_at_contacts(const Simulation& simulation, Linearised& scene) {
     ++scene.contacts;
     pressed.emplace(std::min(contact.a, contact.b), std::max(contact.a, contact.b));
   }
-  scene.friction = scene.contacts > 0 && model.contact.friction.coefficient > 0;
+  const auto rough = [](const ContactRule& rule) {
+    return rule.friction && rule.friction->coefficient > 0;
+  };
+  scene.friction = scene.contacts > 0 && (model.contact.friction.coefficient > 0 ||
+                                          std::ranges::any_of(model.contact.rules, rough));
   for (const TouchingPair& pair : touching_pairs(model, simulation.state())) {
     if (!pressed.contains({pair.a, pair.b})) scene.touching.push_back(pair);
   }

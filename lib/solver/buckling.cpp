@@ -70,7 +70,8 @@ void refuse_soft(SymmetricSystem& system) {
   }
   if (system.negative() > 0) {
     throw NoModes(
-        "without the loads there are motions that nothing resists: support what can move freely");
+        "where the loads begin, there are motions that nothing resists: support what can move "
+        "freely");
   }
 }
 
