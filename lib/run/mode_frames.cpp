@@ -100,7 +100,6 @@ void write_mode_frames(const std::string& folder, const Simulation& simulation,
                   .node_mass = simulation.node_mass(),
                   .bodies = body_statistics(model, state, {}, stresses)});
   }
-  writer.make_last();
 }
 
 }  // namespace apothem

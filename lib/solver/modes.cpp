@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "lib/solver/symmetric_system.hpp"
 
@@ -20,12 +20,13 @@ constexpr Eigen::Index kDense = 120;  // coordinates up to which dense matrices 
 constexpr int kShareOfDense = 3;      // of many modes likewise: those asked for times that
 constexpr double kTolerance = 1e-11;  // of Ritz values, relative
 constexpr int kRestarts = 1000;
-constexpr int kMostPasses = 40;        // of the Lanczos method, until no mode is missing
-constexpr double kBeyond = 1e-7;       // of an eigenvalue: nearer ones count as multiple
-constexpr double kLeastShift = 1e-17;  // of the largest eigenvalue
-constexpr double kShiftRatio = 4;      // up to which a shift is sought
-constexpr int kInverseSteps = 4;       // for zero modes
-constexpr double kDependent = 1e-6;    // of the norm: what is left of a dependent vector
+constexpr int kMostPasses = 40;      // of the Lanczos method, until no mode is missing
+constexpr double kBeyond = 1e-7;     // of an eigenvalue: nearer ones count as multiple
+constexpr double kShiftRatio = 4;    // up to which a shift is sought
+constexpr int kInverseSteps = 4;     // for small eigenvalues
+constexpr double kNothing = 1e-9;    // of what may be rounding: what vectors of others leave
+constexpr double kNearer = 1e-3;     // their shift, of that of the others
+constexpr double kDependent = 1e-6;  // of the norm: what is left of a dependent vector
 
 struct Pair {
   double value;
@@ -106,8 +107,8 @@ std::vector<Pair> lowest_above(SymmetricSystem& system, double shift, int base, 
 
 // The shift of this sign that is next to the eigenvalues behind it, to a factor: the largest one
 // below which there are no more than `base` eigenvalues.
-double shift_below(SymmetricSystem& system, double sign, int base, double bound) {
-  double low = kLeastShift * bound, high = 2 * bound;  // sizes
+double shift_below(SymmetricSystem& system, double sign, int base) {
+  double low = system.least(), high = 2 * system.bound() + low;  // sizes
   const auto fits = [&](double size) { return system.count_below(sign * size) <= base; };
   while (high / low > kShiftRatio) {
     const double middle = std::sqrt(low * high);
@@ -160,8 +161,9 @@ std::vector<Pair> aligned(const SymmetricSystem& system, const ModalSystem& of,
   return basis;
 }
 
-// The space of the zero modes, by inverse iteration: with a shift between them and all others.
-std::vector<Pair> zero_modes(SymmetricSystem& system, int count, double shift) {
+// The space of the small eigenvalues, by inverse iteration with a shift between them and all
+// others.
+std::vector<Pair> small_pairs(SymmetricSystem& system, int count, double shift) {
   system.shift(-shift);
   const Vector root = system.mass().cwiseSqrt();
   std::vector<Pair> basis;
@@ -192,49 +194,69 @@ bool is_dense(Eigen::Index size, int count) {
   return size <= kDense || static_cast<Eigen::Index>(count) * kShareOfDense >= size;
 }
 
-// How many eigenvalues are below zero, and zero: of K with its rounding N, so that a soft body is
-// judged by its own stiffness.
-void count_signs(SymmetricSystem& system, double bound, VibrationModes& result) {
-  // What nothing holds has no stiffness, and no rounding, at all.
-  const Vector least = kLeastShift * bound * system.mass();
-  const Vector noise = system.rounding() + least;
-  if (!system.factorise(noise)) throw NoModes("the stiffness matrix has no useful factors");
-  result.unstable = system.negative();
-  if (!system.factorise(-noise)) throw NoModes("the stiffness matrix has no useful factors");
-  result.rigid = system.negative() - result.unstable;
-}
-
+// The pairs with the lowest eigenvalues: below -least, within it, and above it.
 struct Parts {
-  std::vector<Pair> unstable, zero, others;
+  int below = 0, within = 0;  // numbers of all such eigenvalues
+  std::vector<Pair> negative, small, positive;
 };
 
-Parts dense_parts(const SymmetricSystem& system, const VibrationModes& signs) {
+Parts dense_parts(const SymmetricSystem& system) {
   const Eigen::SelfAdjointEigenSolver<Matrix> all(dense_scaled(system));
+  const double least = system.least();
   Parts parts;
   for (Eigen::Index i = 0; i < system.size(); ++i) {
-    auto& part = i < signs.unstable                 ? parts.unstable
-                 : i < signs.unstable + signs.rigid ? parts.zero
-                                                    : parts.others;
-    part.push_back({all.eigenvalues()[i], all.eigenvectors().col(i)});
+    const double value = all.eigenvalues()[i];
+    auto& part = value < -least ? parts.negative : value < least ? parts.small : parts.positive;
+    part.push_back({value, all.eigenvectors().col(i)});
   }
+  parts.below = static_cast<int>(parts.negative.size());
+  parts.within = static_cast<int>(parts.small.size());
   return parts;
 }
 
-Parts sparse_parts(SymmetricSystem& system, const VibrationModes& signs, double bound, int count) {
+Parts sparse_parts(SymmetricSystem& system, int count) {
   Parts parts;
-  const int base = signs.unstable + signs.rigid;
+  parts.below = system.count_below(-system.least());
+  const int base = system.count_below(system.least());
+  parts.within = base - parts.below;
+  if (parts.below > 0) {
+    parts.negative =
+        lowest_above(system, shift_below(system, -1, 0), 0, std::min(parts.below, count));
+  }
   const int others = std::min(count, static_cast<int>(system.size()) - base);
-  const double shift = base < system.size() ? shift_below(system, 1, base, bound) : bound;
-  if (signs.unstable > 0) {
-    parts.unstable =
-        lowest_above(system, shift_below(system, -1, 0, bound), 0, std::min(signs.unstable, count));
+  const double shift = others > 0 ? shift_below(system, 1, base) : system.least();
+  if (parts.within > 0 && parts.within <= kMostRigidShapes) {
+    parts.small = small_pairs(system, parts.within, std::max(system.least(), kNearer * shift));
   }
-  if (signs.rigid > 0 && signs.rigid <= kMostRigidShapes) {
-    parts.zero = zero_modes(system, signs.rigid,
-                            std::max(kInverseSteps * kLeastShift * bound, 1e-3 * shift));
-  }
-  if (others > 0) parts.others = lowest_above(system, shift, base, others);
+  if (others > 0) parts.positive = lowest_above(system, shift, base, others);
   return parts;
+}
+
+// Sorts out which of the small eigenvalues are more than rounding, each mode by its own stiffness:
+// a soft body beside a stiff one vibrates or is unstable as well. Returns those that are rounding.
+std::vector<Pair> sort_small(const SymmetricSystem& system, Parts& parts) {
+  const auto n = static_cast<Eigen::Index>(parts.small.size());
+  if (n == 0) return {};
+  Matrix vectors(system.size(), n);
+  for (Eigen::Index i = 0; i < n; ++i) vectors.col(i) = parts.small[static_cast<size_t>(i)].vector;
+  const Vector inverse_root = system.mass().cwiseSqrt().cwiseInverse();
+  const Matrix shapes = inverse_root.asDiagonal() * vectors;
+  const Matrix stiffness = shapes.transpose() * (system.matrix() * shapes);
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver((stiffness + stiffness.transpose()) / 2);
+  std::vector<Pair> rounding;
+  std::vector<Pair> soft;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vector part = solver.eigenvectors().col(i), shape = shapes * part;
+    const double value = solver.eigenvalues()[i];
+    const double rounded = shape.cwiseProduct(system.rounding()).dot(shape);
+    const bool known = std::abs(value) > std::max(rounded, kNothing * system.least());
+    (!known ? rounding : value < 0 ? parts.negative : soft).push_back({value, vectors * part});
+  }
+  sort_by_value(parts.negative);
+  parts.positive.insert(parts.positive.begin(), soft.begin(), soft.end());
+  parts.below += parts.within - static_cast<int>(rounding.size() + soft.size());
+  parts.within = static_cast<int>(rounding.size());
+  return rounding;
 }
 
 }  // namespace
@@ -245,22 +267,21 @@ VibrationModes vibration_modes(const Tangent& tangent, const ModalSystem& of, in
   result.coordinates = static_cast<int>(system.size());
   result.skew = system.skew();
   if (system.size() == 0) return result;
-  double bound = system.bound();
-  if (!std::isfinite(bound)) throw NoModes("the stiffness matrix is not finite");
-  if (bound == 0) bound = 1;
-  count_signs(system, bound, result);
-  Parts parts = is_dense(system.size(), count) ? dense_parts(system, result)
-                                               : sparse_parts(system, result, bound, count);
+  if (!std::isfinite(system.bound())) throw NoModes("the stiffness matrix is not finite");
+  Parts parts = is_dense(system.size(), count) ? dense_parts(system) : sparse_parts(system, count);
+  std::vector<Pair> zero;
+  if (parts.within <= kMostRigidShapes) zero = aligned(system, of, sort_small(system, parts));
+  result.unstable = parts.below;
+  result.rigid = parts.within;
   const auto most = static_cast<size_t>(count);
-  if (parts.unstable.size() > most) parts.unstable.resize(most);
-  parts.others.resize(std::min(parts.others.size(), most - parts.unstable.size()));
-  if (parts.zero.size() > static_cast<size_t>(kMostRigidShapes)) parts.zero.clear();
-  parts.zero = aligned(system, of, parts.zero);
+  if (parts.negative.size() > most) parts.negative.resize(most);
+  parts.positive.resize(std::min(parts.positive.size(), most - parts.negative.size()));
   const Vector inverse_root = system.mass().cwiseSqrt().cwiseInverse();
-  for (const auto* part : {&parts.unstable, &parts.zero, &parts.others}) {
+  for (const auto* part :
+       {&std::as_const(parts.negative), &std::as_const(zero), &std::as_const(parts.positive)}) {
     for (const Pair& p : *part) {
       result.modes.push_back(
-          {part == &parts.zero ? 0 : p.value, system.shape(inverse_root.cwiseProduct(p.vector))});
+          {part == &zero ? 0 : p.value, system.shape(inverse_root.cwiseProduct(p.vector))});
     }
   }
   return result;

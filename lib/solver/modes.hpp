@@ -1,10 +1,10 @@
 // Modes: eigenvalues and eigenvectors of sparse symmetric matrices.
 //
 //   vibration  K phi = w^2 M phi, M diagonal, by shift and invert
-//   buckling   (K_0 + f (K_1 - K_0)) phi = 0, K_0 positive definite
+//   buckling   (K_0 + f (K_1 - K_0)) phi = 0, K_0 positive definite, likewise
 //
 // The lowest ones are found by the Lanczos method with implicit restarts (Spectra), which needs
-// products and solutions with the sparse factors only (linear_solver.hpp). A Lanczos run may miss
+// products and solutions with sparse factors only. A Lanczos run may miss
 // copies of multiple eigenvalues. So the number of eigenvalues below the highest one that has been
 // found is compared with the number of negative pivots there (Sylvester's law of inertia), and
 // what is missing is looked for again, with the known ones taken out (K. J. Bathe, Finite Element

@@ -45,7 +45,7 @@ SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& syst
   matrix_ = (whole + across) / 2;
   const double norm = whole.norm();
   skew_ = norm > 0 ? (whole - across).eval().norm() / (2 * norm) : 0;
-  factors_.analyzePattern(matrix_);
+  factors_->analyzePattern(matrix_);
 }
 
 double SymmetricSystem::bound() const {
@@ -59,11 +59,16 @@ double SymmetricSystem::bound() const {
   return size() > 0 ? sums.maxCoeff() : 0;
 }
 
+double SymmetricSystem::least() const {
+  const double least = size() > 0 ? rounding_.cwiseQuotient(mass_).maxCoeff() : 0;
+  return least > 0 ? least : 1;  // of what has no stiffness at all, any number will do
+}
+
 bool SymmetricSystem::factorise(const Vector& diagonal) {
   shifted_ = matrix_;
   shifted_.diagonal() += diagonal;
-  factors_.factorize(shifted_);
-  if (factors_.info() != Eigen::Success) return false;
+  factors_->factorize(shifted_);
+  if (factors_->info() != Eigen::Success) return false;
   // Coordinates are eliminated in a fixed order, which may meet a pivot that is nearly zero.
   Vector b(size());
   for (Eigen::Index i = 0; i < size(); ++i) {

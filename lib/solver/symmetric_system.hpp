@@ -6,6 +6,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <memory>
+
 #include "lib/solver/modes.hpp"
 
 namespace apothem {
@@ -24,6 +26,8 @@ class SymmetricSystem {
   /// What rounding may have made of each coordinate's stiffness: phi^T K phi is known up to
   /// phi^T N phi with this diagonal N.
   [[nodiscard]] const Vector& rounding() const { return rounding_; }
+  /// Eigenvalues of K phi = w^2 M phi that are smaller in size may be rounding, 1/s^2.
+  [[nodiscard]] double least() const;
   /// Norm of the part of the tangent that is not symmetric over that of the tangent.
   [[nodiscard]] double skew() const { return skew_; }
   /// A bound of the sizes of all eigenvalues of K phi = w^2 M phi, 1/s^2 (Gershgorin's circles).
@@ -33,9 +37,9 @@ class SymmetricSystem {
   [[nodiscard]] bool factorise(const Vector& diagonal);
   /// The number of negative eigenvalues of the last matrix that was factorised.
   [[nodiscard]] int negative() const {
-    return static_cast<int>((factors_.vectorD().array() < 0).count());
+    return static_cast<int>((factors_->vectorD().array() < 0).count());
   }
-  [[nodiscard]] Vector solve(const Vector& b) const { return factors_.solve(b); }
+  [[nodiscard]] Vector solve(const Vector& b) const { return factors_->solve(b); }
 
   /// Factorises K - shift M, where need be with a shift that is a little larger in size, which it
   /// returns. Throws NoModes.
@@ -52,7 +56,9 @@ class SymmetricSystem {
   Eigen::SparseMatrix<double> matrix_, shifted_;
   Vector mass_, rounding_;
   double skew_ = 0;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
+  // Eigen's factors cannot be copied or moved.
+  using Factors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+  std::unique_ptr<Factors> factors_ = std::make_unique<Factors>();
 };
 
 }  // namespace apothem

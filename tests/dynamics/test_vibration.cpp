@@ -238,14 +238,18 @@ TEST_CASE("modes of mixed assemblies are those of dense algebra, and carry all m
                                  root.cwiseInverse().asDiagonal();
     const Eigen::VectorXd exact =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(half(which, which)).eigenvalues();
-    CAPTURE(n, blocks, meshed, exact[0], exact[1], exact[2], exact[exact.size() - 1]);
+    CAPTURE(n, blocks, meshed);
     for (const int count : {2, 1000}) {  // by sparse algebra where the mesh is large enough, or all
       const SceneModes found = modes_of(scene, count);
       CHECK(found.coordinates == static_cast<int>(which.size()));
+      CHECK(found.unstable + found.rigid <= blocks + 1);  // what slides without friction
       std::array<double, 2> share{};
       for (size_t i = 0; i < found.modes.size(); ++i) {
         const SceneMode& mode = found.modes[i];
-        CHECK(mode.eigenvalue == Approx(exact[static_cast<Eigen::Index>(i)])
+        // Of many unstable ones the first two are there.
+        const size_t left_out =
+            mode.kind == ModeKind::unstable ? 0 : std::max(0, found.unstable - count);
+        CHECK(mode.eigenvalue == Approx(exact[static_cast<Eigen::Index>(i + left_out)])
                                      .epsilon(1e-8)
                                      .margin(1e-12 * exact[exact.size() - 1]));
         for (const size_t axis : {0, 1}) share[axis] += mode.share[axis];

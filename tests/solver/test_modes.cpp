@@ -176,7 +176,7 @@ TEST_CASE("buckling of a chain of rigid links", "[modes]") {
       CHECK(found[static_cast<size_t>(j)].eigenvalue ==
             Approx(kSpring / (4 * kForce * s * s)).epsilon(1e-9));
     }
-    // Tension makes nothing buckle.
+    // What only grows stiffer does not buckle.
     CHECK(buckling_modes(loaded.tangent, unloaded.tangent, loaded.system, 3).empty());
   }
 }
