@@ -85,12 +85,16 @@ void note_contacts(const Model& model, Analysis& found) {
   const Linearised& scene = found.scene;
   if (!scene.touching.empty()) {
     const TouchingPair& first = scene.touching.front();
-    add_note(found,
-             fmt::format("{} without pressing on each other, first \"{}\" and \"{}\": such "
-                         "a contact counts as open, unless rounding makes the outlines overlap",
-                         counted(static_cast<int>(scene.touching.size()), "pair of bodies touches",
-                                 "pairs of bodies touch"),
-                         model.name_of(first.a), model.name_of(first.b)));
+    const std::string closed =
+        scene.overlapping > 0
+            ? fmt::format(", but {} as closed, because rounding makes the outlines overlap",
+                          counted(scene.overlapping, "patch counts", "patches count"))
+            : "";
+    add_note(found, fmt::format("{} without pressing on each other, first \"{}\" and \"{}\": such "
+                                "contacts count as open{}",
+                                counted(static_cast<int>(scene.touching.size()),
+                                        "pair of bodies touches", "pairs of bodies touch"),
+                                model.name_of(first.a), model.name_of(first.b), closed));
   }
   if (scene.friction) add_note(found, "friction counts as sticking in all contacts that press");
 }

@@ -42,7 +42,10 @@ void look_at_contacts(const Simulation& simulation, Linearised& scene) {
   std::set<std::pair<BodyIndex, BodyIndex>> pressed;
   for (const ContactRecord& contact : simulation.contacts()) {
     const double size = std::min(inradius[contact.a], inradius[contact.b]);
-    if (!(contact.penetration > kPressing * size)) continue;
+    if (!(contact.penetration > kPressing * size)) {
+      scene.overlapping += contact.normal.squaredNorm() > 0;
+      continue;
+    }
     ++scene.contacts;
     pressed.emplace(std::min(contact.a, contact.b), std::max(contact.a, contact.b));
   }
