@@ -93,11 +93,11 @@ int check_command(const CheckOptions& options);
 
 /// Options of `apothem modes`.
 struct ModesOptions {
-  std::string scene;             ///< scene file
-  int count = 10;                ///< of modes besides those at 0 Hz
-  bool buckling = false;         ///< buckling loads instead
-  std::string folder;            ///< folder of results; empty: none are written
-  bool overwrite = false;        ///< replace the results in the folder
+  std::string scene;       ///< scene file
+  int count = 10;          ///< of modes besides those at 0 Hz
+  bool buckling = false;   ///< buckling loads instead
+  std::string folder;      ///< folder of results; empty: none are written
+  bool overwrite = false;  ///< replace the results in the folder
   int threads = 1;
   bool json = false;             ///< print JSON instead of a table
   std::vector<std::string> set;  ///< PATH=VALUE, in place of values of the scene
