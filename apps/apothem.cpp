@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("sweep")) return sweep_command(options.sweep);
   if (app.got_subcommand("picture")) return picture_command(options.picture);
   if (app.got_subcommand("check")) return check_command(options.check);
+  if (app.got_subcommand("modes")) return modes_command(options.modes);
   if (app.got_subcommand("mesh")) return mesh_command(options.mesh);
   if (app.got_subcommand("polygon")) return polygon_command(options.polygon);
   if (app.got_subcommand("boolean")) return boolean_command(options.boolean);
@@ -139,6 +140,8 @@ int main(int argc, char** argv) {
     return fail(exit_code::bad_input, error.what());
   } catch (const ResultsError& error) {
     return fail(exit_code::bad_input, error.what());
+  } catch (const Unstable& error) {
+    return fail(exit_code::unstable, error.what());
   } catch (const Stopped& stopped) {
     return fail(exit_code::interrupted, stopped.what());
   } catch (const Interrupted& interrupt) {

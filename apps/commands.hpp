@@ -91,6 +91,20 @@ struct CheckOptions {
 /// Validates a scene and prints what a run would do.
 int check_command(const CheckOptions& options);
 
+/// Options of `apothem modes`.
+struct ModesOptions {
+  std::string scene;       ///< scene file
+  int count = 10;          ///< of modes besides those at 0 Hz
+  bool buckling = false;   ///< buckling loads instead
+  std::string folder;      ///< folder of results; empty: none are written
+  bool overwrite = false;  ///< replace the results in the folder
+  int threads = 1;
+  bool json = false;             ///< print JSON instead of a table
+  std::vector<std::string> set;  ///< PATH=VALUE, in place of values of the scene
+};
+/// Finds the modes of vibration of a scene, or its buckling loads.
+int modes_command(const ModesOptions& options);
+
 /// Options of `apothem contact`.
 struct ContactOptions {
   std::string a, b;   ///< files of the two polygons

@@ -197,6 +197,20 @@ void add_check(CLI::App& app, CheckOptions& o) {
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
+void add_modes(CLI::App& app, ModesOptions& o) {
+  CLI::App* sub = app.add_subcommand("modes", "Frequencies and shapes of small vibrations");
+  add(sub, "SCENE", o.scene, "FILE", "Scene file (JSON)")->required();
+  add_whole(sub, "-n,--number", o.count, 1000, "Modes to find, besides those at 0 Hz")
+      ->capture_default_str();
+  sub->add_flag("--buckling", o.buckling,
+                "Factors of the loads of a static scene at which it buckles, instead");
+  add(sub, "-o,--output", o.folder, "DIR", "Folder for a table and for frames of the modes");
+  sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder");
+  add_threads(sub, o.threads, "Threads for contacts, elements and frames");
+  add_settings(sub, o.set);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
 // --output WHAT -o FILE, which go together. Returns the former.
 CLI::Option* add_shapes(CLI::App* sub, std::string& what, const std::vector<std::string>& choices,
                         std::string& file) {
@@ -434,6 +448,7 @@ void add_commands(CLI::App& app, Options& options) {
   add_sweep(app, options.sweep);
   add_picture(app, options.picture);
   add_check(app, options.check);
+  add_modes(app, options.modes);
   add_contact(app, options.contact);
   add_polygon(app, options.polygon);
   add_boolean(app, options.boolean);

@@ -16,6 +16,7 @@ struct Options {
   SweepOptions sweep;
   PictureOptions picture;
   CheckOptions check;
+  ModesOptions modes;
   ContactOptions contact;
   PolygonOptions polygon;
   BooleanOptions boolean;

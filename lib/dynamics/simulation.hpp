@@ -72,6 +72,12 @@ class Simulation {
   /// if it finds no equilibrium; the state is then not to be trusted.
   LoadStep balance(double time, const std::function<bool()>& stop = {});
 
+  /// Finds the derivative of minus all forces by the coordinates at the present places, where
+  /// friction sticks, and what of the forces on coordinates that can move is out of balance (N and
+  /// N m). Returns false if a term does not know its derivative. The simulation is afterwards as
+  /// before.
+  bool linearise(Tangent& tangent, std::vector<double>& out_of_balance);
+
   /// Takes over what contacts of another simulation remember, by the numbers of this one's
   /// contacts, before the first step.
   void inherit(const FrictionMemory& memory);

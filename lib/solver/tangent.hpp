@@ -18,6 +18,10 @@ class Tangent {
   };
 
   void clear() { entries_.clear(); }
+  /// Friction springs at their limit are to add the stiffness that they would have below it: those
+  /// of a contact whose slip has come to rest.
+  void let_friction_stick() { friction_sticks_ = true; }
+  [[nodiscard]] bool friction_sticks() const { return friction_sticks_; }
   void add(size_t row, size_t column, double value) {
     entries_.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(column), value});
   }
@@ -40,6 +44,7 @@ class Tangent {
 
  private:
   std::vector<Entry> entries_;
+  bool friction_sticks_ = false;
 };
 
 }  // namespace apothem

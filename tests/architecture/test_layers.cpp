@@ -201,6 +201,7 @@ TEST_CASE("each library has its only places", "[architecture]") {
       {"CGAL/", {"geometry"}, true},
       {"vtk", {"lib/output"}, true},
       {"cairo", {"lib/output"}, true},
+      {"Spectra/", {"lib/solver"}, true},
       {"nlohmann/", {"lib/scene", "lib/player", "lib/run", "lib/sweep", "apps"}, true},
       {"zlib", {"lib/player"}, true},
       {"CLI/", {"apps"}, true},

@@ -396,7 +396,7 @@ void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_nod
       const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
       if (!law.rough() || !(contact.normal > 0)) continue;
       const double limit = friction_limit(law.friction.coefficient, contact.pressed);
-      if (is_sliding(contact.friction, limit)) continue;
+      if (!tangent.friction_sticks() && is_sliding(contact.friction, limit)) continue;
       along.clear();
       each_coordinate(blocks, unit, groups[g], contact,
                       [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {

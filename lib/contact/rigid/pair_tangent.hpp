@@ -16,9 +16,10 @@ struct TriedFriction {
   Spring now;
   /// The spring before the trial; null in pairs with several patches, where it is not known.
   const Spring* before;
-  bool begins;    ///< true if the pair had no patch before
-  PairRate rate;  ///< displacements over dt
-  double dt;      ///< s
+  bool begins;          ///< true if the pair had no patch before
+  PairRate rate;        ///< displacements over dt
+  double dt;            ///< s
+  bool sticks = false;  ///< see Tangent::friction_sticks
 };
 
 /// The force of a patch on bodies a and b with its derivatives, N and N m. `friction` is null

@@ -213,6 +213,7 @@ bool PolygonKernel::add_tangent(size_t /*first_node*/, Tangent& tangent) const {
       TriedFriction friction;
       const bool rubs = tangential_ && law.rough();
       if (rubs && !tangential_->tried(pair, i, friction)) return false;
+      friction.sticks = tangent.friction_sticks();
       add_pair_tangent(pair.a, pair.b,
                        patch_force(surfaces_, thickness_, law, pair.a, pair.b, patches[i],
                                    rubs ? &friction : nullptr),

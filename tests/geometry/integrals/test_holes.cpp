@@ -49,7 +49,7 @@ HoledPair random_pair(Random& random) {
   return {a, samples::scaled(one(20), random.uniform(.2, 1.5))};
 }
 
-PairResult overlap(const Polygon& a, const Polygon& b, const PotentialChoice& choice) {
+PairResult overlap_with_holes(const Polygon& a, const Polygon& b, const PotentialChoice& choice) {
   return overlap_method(a, make_potential(a, choice), b, make_potential(b, choice));
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("edge method, exact overlap and 100 digits agree about polygons with h
     const PairResult edge =
         edge_method(pair.a, make_potential(pair.a, choice), pair.b, make_potential(pair.b, choice));
     CAPTURE(i, edge.integral.weight, pair.a.rings(), pair.b.rings());
-    const PairResult other = overlap(pair.a, pair.b, choice);
+    const PairResult other = overlap_with_holes(pair.a, pair.b, choice);
     check_same(edge, other, 1e-12);
     const bool oracle = test::long_run() || i % 16 == 0 || i % 64 == 33;
     if (oracle) check_same(edge, exact_method(pair.a, pair.b, choice), 1e-12);
