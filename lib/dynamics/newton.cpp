@@ -25,6 +25,7 @@ constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the 
 constexpr double kLonger = 3, kShorter = 5;
 constexpr double kPolish = 1e-6;  // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;    // of a rigid body's inradius
+constexpr double kNearReach = 1e-3;  // of that, where the equilibrium is near
 constexpr double kNodeReach = 8;  // of the shortest edge
 // Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
 constexpr double kMeshGrowth = 100;
@@ -83,7 +84,7 @@ double Equilibrium::first_shift() const {
   for (size_t c = 0; c < rest_.size(); ++c) {
     if (!held(c)) shift = std::max(shift, std::abs(rest_[c]) / dofs_.mass(c) / reach(c));
   }
-  return shift;
+  return near_ ? shift / kNearReach : shift;
 }
 
 // K + M/h^2 at the present places, and its solution. In the first iteration of a share prescribed
@@ -161,6 +162,7 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
     }
     if (path.damped && !path.polishing && path.in_step > 0 &&
         now <= kStepTolerance * path.at_start) {
+      if (near_ && strays(state, before)) return Verdict::failed;
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
@@ -251,6 +253,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
       newton_pause_ = std::move(path);
       return Verdict::stopped;
     }
+    if (verdict == Verdict::failed && near_) return verdict;
     path.iteration = 0;
     if (verdict == Verdict::found) {
       if (share == 1) break;

@@ -72,6 +72,11 @@ class Simulation {
   /// if it finds no equilibrium; the state is then not to be trusted.
   LoadStep balance(double time, const std::function<bool()>& stop = {});
 
+  /// The same, but only to an equilibrium near the last one: see Equilibrium::find_near. The state
+  /// has not changed if it finds none.
+  LoadStep balance_near(double time, const std::function<bool()>& stop,
+                        std::vector<double>& motion);
+
   /// Takes over what contacts of another simulation remember, by the numbers of this one's
   /// contacts, before the first step.
   void inherit(const FrictionMemory& memory);
@@ -131,6 +136,7 @@ class Simulation {
  private:
   void make_terms(int threads);
   void start_ledger();
+  void finish_load_step(const State& before, double time);
   // Work and impulse from outside, with the error of energy and the momentum before they came.
   void book_change(double error, const Impulse& momentum);
   void take_step();

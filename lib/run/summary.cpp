@@ -70,6 +70,21 @@ void add_load_steps(Json& json, const Run& run) {
   }
 }
 
+Json collapse(const Run& run) {
+  const Collapse& c = *run.collapse();
+  const Model& model = run.scene().model;
+  Json bodies = Json::array();
+  for (const MovingBody& b : moving_bodies(model, run.state(), c.motion)) {
+    bodies.push_back({{"body", model.name_of(b.body)}, {"x", b.x}, {"y", b.y}, {"angle", b.angle}});
+  }
+  return {{"factor", c.factor()},
+          {"lower", c.lower},
+          {"upper", c.upper},
+          {"mechanism", c.frame < 0 ? Json() : Json(c.frame)},
+          {"scale", c.scale},
+          {"bodies", std::move(bodies)}};
+}
+
 Json settings(const Scene& scene) {
   Json json = Json::object();
   for (const Setting& s : scene.settings) json[s.path] = Json::parse(s.value);
@@ -179,6 +194,7 @@ std::string summary_text(const Run& run) {
   add_peaks(json, run);
   json["final_state_hash"] = state_hash(state);
   if (scene.time.statics) add_load_steps(json, run);
+  if (run.collapse()) json["collapse"] = collapse(run);
   if (!run.message().empty()) json["message"] = run.message();
   json["warnings"] = run.warnings();
   json["expectations"] = expectations(run);
