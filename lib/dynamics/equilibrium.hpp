@@ -96,6 +96,7 @@ class Equilibrium {
   void begin_longer_step(const State& state, NewtonPath& path);
   bool begin_shorter_step(State& state, NewtonPath& path);
   double shifted_residual(const State& state, const NewtonPath& path);
+  [[nodiscard]] double rounded_residual(const State& state) const;
   [[nodiscard]] double shortened(const std::vector<double>& step) const;
   [[nodiscard]] double reach(size_t coordinate) const;
   [[nodiscard]] double first_shift() const;

@@ -20,7 +20,7 @@ constexpr double kLeastShare = 1e-4;  // of a load step
 constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
 constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalvings = 6,
-              kMostShortened = 60;
+              kMostShortened = 60, kMostShortenedNear = 12;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
 constexpr double kPolish = 1e-6;  // of the shift, from an equilibrium to round-off
@@ -58,6 +58,22 @@ double Equilibrium::shifted_residual(const State& state, const NewtonPath& path)
     const double inertia = dofs_.mass(c);
     drive_[c] = rest_[c] - path.shift * inertia * (state.x[c] - path.base[c]);
     sum += drive_[c] * drive_[c] / inertia;
+  }
+  return std::sqrt(sum);
+}
+
+// What the rounding of places leaves of the residual: they are answered with the stiffness of the
+// contacts. A step that ends there is found as exactly as it can be.
+double Equilibrium::rounded_residual(const State& state) const {
+  double sum = 0;
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    const size_t first = state.layout.rigid(i);
+    const double place = std::abs(state.x[first]) + std::abs(state.x[first + 1]) + radius_[i];
+    for (size_t c = first; c < first + 3; ++c) {
+      if (held(c)) continue;
+      const double rounded = kRoundedPlaces * (c == first + 2 ? place / radius_[i] : place);
+      sum += rounded * rounded * lambda_[i] * lambda_[i] * dofs_.mass(c);
+    }
   }
   return std::sqrt(sum);
 }
@@ -161,7 +177,7 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
       }
     }
     if (path.damped && !path.polishing && path.in_step > 0 &&
-        now <= kStepTolerance * path.at_start) {
+        now <= std::max(kStepTolerance * path.at_start, rounded_residual(state))) {
       if (near_ && strays(state, before)) return Verdict::failed;
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
@@ -214,7 +230,7 @@ void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
 
 // Again from where the step began.
 bool Equilibrium::begin_shorter_step(State& state, NewtonPath& path) {
-  if (++path.shortened > kMostShortened) return false;
+  if (++path.shortened > (near_ ? kMostShortenedNear : kMostShortened)) return false;
   state.x = path.base;
   dofs_.place_driven(state);
   path.shift *= kShorter * kShorter;

@@ -11,6 +11,7 @@
 #include "lib/dynamics/simulation.hpp"
 #include "lib/output/history.hpp"
 #include "lib/run/load_path.hpp"
+#include "lib/run/rigid_limit.hpp"
 #include "lib/run/stop_watch.hpp"
 #include "lib/scene/scene.hpp"
 
@@ -47,6 +48,7 @@ struct RunProgress {
   std::int64_t last_row = -1, last_frame = -1;  ///< steps of the last ones
   std::vector<LoadStep> load_steps;             ///< of static runs
   LoadPath load_path;                           ///< likewise
+  RigidLimit rigid;                             ///< of scenes that ask for it
   Beginning beginning;
   std::vector<AddedForce> forces;
   StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
@@ -54,7 +56,7 @@ struct RunProgress {
   void fields(Archive& archive) {
     archive("histories", histories)("frame_times", frame_times)("next_row", next_row)(
         "next_frame", next_frame)("last_row", last_row)("last_frame", last_frame)(
-        "load_steps", load_steps)("load_path", load_path)("beginning", beginning)("forces", forces);
+        "load_steps", load_steps)("load_path", load_path)("rigid", rigid)("beginning", beginning)("forces", forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };

@@ -77,7 +77,8 @@ double shown_scale(const Model& model, const State& state, const std::vector<dou
 std::string describe(const Model& model, const State& state, const Collapse& collapse) {
   const std::vector<MovingBody> moving = moving_bodies(model, state, collapse.motion);
   std::string text = fmt::format("collapses at load factor {:.6g} (between {:.6g} and {:.6g})",
-                                 collapse.factor(), collapse.lower, collapse.upper);
+                                 collapse.factor(), collapse.factor() - collapse.error(),
+                                 collapse.factor() + collapse.error());
   if (moving.empty()) return text;
   const auto most = std::ranges::max_element(moving, {}, &MovingBody::most);
   return text + fmt::format(": {} of {} bodies move, \"{}\" most; the last frame shows how",

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "lib/archive/archive.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/state.hpp"
+#include "lib/run/rigid_limit.hpp"
 
 namespace apothem {
 
@@ -17,8 +19,12 @@ struct Collapse {
   std::vector<double> motion = {};
   double scale = 1;  ///< of the motion in the frame that shows it
   int frame = -1;    ///< its number; -1: no frame is written
+  /// Of the load factor for rigid bodies, if the scene asks for that and it is known.
+  std::optional<Estimate> rigid = {};
 
-  [[nodiscard]] double factor() const { return (lower + upper) / 2; }
+  [[nodiscard]] double factor() const { return rigid ? rigid->value : (lower + upper) / 2; }
+  /// How far the factor may be from the limit of this model.
+  [[nodiscard]] double error() const { return rigid ? rigid->error : (upper - lower) / 2; }
 };
 
 /// How a body takes part in a mechanism: the motion of its mass centre and its rotation.

@@ -118,6 +118,12 @@ HistoryWriter::Parts Run::start() {
     other.emplace(settings_.from, settings_.from_time);
     progress_.beginning = other->move_into(scene_);
   }
+  if (other && scene_.rigid) {
+    throw scene_.error_at("/contact/rigid",
+                          "is not supported yet for a run that begins with another one, whose "
+                          "contacts have their own stiffness; leave out --from");
+  }
+  stiffen();
   simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene,
                                 settings_.stop_if);
   if (other) other->hand_contacts_to(*simulation_);
@@ -135,8 +141,22 @@ HistoryWriter::Parts Run::start() {
   return {};
 }
 
+// Results are those of the stiffest pass.
+void Run::stiffen() {
+  if (!scene_.rigid) return;
+  if (progress_.rigid.passes.empty()) {
+    progress_.rigid =
+        find_rigid_limit(scene_.model, scene_.time, settings_.threads, settings_.stop_if);
+  }
+  const double own = scene_.model.contact.normal_stiffness;
+  scene_.model = stiffened(std::move(scene_.model), progress_.rigid.passes.back().stiffness / own);
+}
+
 void Run::go_on(const std::string& file) {
-  begin_at(scene_.model, read_progress(file).beginning.bodies);
+  const RunProgress progress = read_progress(file);
+  begin_at(scene_.model, progress.beginning.bodies);
+  progress_.rigid = progress.rigid;
+  stiffen();
   simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
   read_state(file, scene_hash_, *simulation_, progress_);
   forces_before_ = progress_.forces;
@@ -278,6 +298,7 @@ bool Run::automatic_load_step() {
 void Run::end_by_collapse(double upper, std::vector<double> motion) {
   const double scale = shown_scale(scene_.model, state(), motion);
   collapse_ = {state().time, upper, std::move(motion), scale};
+  if (scene_.rigid) collapse_->rigid = progress_.rigid.factor();
   stopped_by_ = kStoppedCollapse;
   message_ = describe(scene_.model, state(), *collapse_);
   write_mechanism();

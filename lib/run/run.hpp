@@ -124,6 +124,8 @@ class Run {
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
   /// Of a static run whose loads could not be carried any more; else null.
   [[nodiscard]] const Collapse* collapse() const { return collapse_ ? &*collapse_ : nullptr; }
+  /// Of scenes with rigid bodies in the limit; else without passes.
+  [[nodiscard]] const RigidLimit& rigid_limit() const { return progress_.rigid; }
   /// Whether the scene asks for the load factor of its collapse, which is then a result.
   [[nodiscard]] bool seeks_collapse() const;
   /// One for each expectation of the scene, after a run to its end.
@@ -141,6 +143,7 @@ class Run {
   HistoryWriter::Parts start();
   HistoryWriter::Parts resume();
   void prepare();
+  void stiffen();
   void refuse_other_beginning() const;
   [[nodiscard]] bool reached(double time) const;
   void require_forces() const;

@@ -180,6 +180,8 @@ class SceneReader {
     scene_.time.longest_step = scene_.output.history_interval.value_or(scene_.time.end / 1000);
     add_features_of_all_bodies();
     refuse_incompatible(in_, features_);
+    scene_.rigid = features_.uses(Feature::rigid_limit);
+    if (scene_.rigid) scene_.time.automatic_load_steps = true;
     if (scene_.time.automatic_load_steps) reader.know({kCollapseFactor, "1"});
     if (expect) scene_.expectations = reader.expectations(*expect, scene_.time.end);
     if (measure) scene_.measures = reader.measures(*measure, scene_.time.end, stop_names());

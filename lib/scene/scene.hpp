@@ -19,6 +19,7 @@ struct Scene {
   Model model;
   TimeSettings time;
   OutputSettings output;
+  bool rigid = false;  ///< results are those of rigid bodies (run/rigid_limit.hpp)
   std::vector<Expectation> expectations;
   std::vector<StopRule> stops;
   std::vector<Measure> measures;

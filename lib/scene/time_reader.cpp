@@ -37,6 +37,7 @@ class TimeReader {
       time_.automatic_load_steps = true;
       return;
     }
+    features_.add(Feature::counted_load_steps, &value);
     time_.load_steps = in_.count(value);
     if (time_.load_steps < 1) in_.fail(value, "must be at least 1");
   }
