@@ -11,6 +11,7 @@ namespace apothem {
 namespace {
 
 constexpr double kMoves = 0.01;   // of the longest way
+constexpr double kMechanism = 0.01;  // of an inradius
 constexpr double kShown = 0.05;   // of the size of all free bodies
 
 // The mean motion of the nodes of a deformable body, and the longest way of one.
@@ -59,6 +60,17 @@ std::vector<MovingBody> moving_bodies(const Model& model, const State& state,
   const double most = longest(bodies);
   std::erase_if(bodies, [&](const MovingBody& b) { return !(b.most > kMoves * most); });
   return bodies;
+}
+
+bool is_mechanism(const Model& model, const State& state, const std::vector<double>& motion) {
+  return std::ranges::any_of(all_bodies(model, state, motion), [&](const MovingBody& b) {
+    const auto rigid = static_cast<BodyIndex>(model.bodies.size());
+    if (b.body < rigid) {
+      return b.most > kMechanism * model.bodies[static_cast<size_t>(b.body)].inradius;
+    }
+    const DeformableBody& body = model.deformables[static_cast<size_t>(b.body - rigid)];
+    return b.most > kMechanism * box_of(body.mesh.nodes).extent();
+  });
 }
 
 double shown_scale(const Model& model, const State& state, const std::vector<double>& motion) {

@@ -39,6 +39,11 @@ struct MovingBody {
 std::vector<MovingBody> moving_bodies(const Model& model, const State& state,
                                       const std::vector<double>& motion);
 
+/// Whether the motion is that of a mechanism: over a load step as short as LoadPath::kResolution
+/// some body moves by more than a hundredth of its inradius, or of its size if it has a mesh. Where
+/// nothing does, the equilibrium has not been found for another reason.
+bool is_mechanism(const Model& model, const State& state, const std::vector<double>& motion);
+
 /// Scales the motion to a twentieth of the size of all free bodies together.
 double shown_scale(const Model& model, const State& state, const std::vector<double>& motion);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lib/dynamics/simulation.hpp"
+#include "lib/run/collapse.hpp"
 #include "lib/run/load_path.hpp"
 
 namespace apothem {
@@ -108,8 +109,9 @@ double stiffest(const Model& model) {
 
 namespace {
 
-// One pass: the load path to its end or to the limit. Returns where the bodies are in the end.
-State walk(const Model& model, const TimeSettings& time, int threads,
+// One pass: the load path to its end or to the limit. Returns where the bodies are in the end, or
+// nothing if an equilibrium has not been found.
+std::optional<State> walk(const Model& model, const TimeSettings& time, int threads,
            const std::function<bool()>& stop, RigidPass& pass) {
   Simulation simulation(model, time, 1, threads, stop);
   LoadPath path(time.end);
@@ -121,6 +123,8 @@ State walk(const Model& model, const TimeSettings& time, int threads,
     if (found.found) {
       path.found(next);
     } else if (path.missed(before, next)) {
+      // Without a mechanism it is the search that has failed.
+      if (!is_mechanism(model, simulation.state(), motion)) return {};
       pass.collapsed = true;
       pass.lower = before, pass.upper = next;
       return simulation.state();
@@ -165,11 +169,17 @@ RigidLimit find_rigid_limit(const Model& model, const TimeSettings& time, int th
   for (double k = first; k <= most * (1 + 1e-9); k *= kStiffer) {
     RigidPass pass{.stiffness = k};
     const Model stiff = stiffened(model, k / own);
-    State after = walk(stiff, time, threads, stop, pass);
+    std::optional<State> after = walk(stiff, time, threads, stop, pass);
+    if (!after) break;
     limit.passes.push_back(pass);
-    if (before) limit.change = change_of_places(model, *before, after);
+    if (before) limit.change = change_of_places(model, *before, *after);
     before = std::move(after);
     if (stands_still(limit)) break;
+  }
+  if (limit.passes.empty()) {
+    throw Unrunnable("Newton's method finds no equilibrium under the first loads, although no body "
+                     "moves away; another contact.normal_stiffness may help",
+                     "contact/normal_stiffness", -1);
   }
   return limit;
 }

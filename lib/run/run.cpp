@@ -145,8 +145,12 @@ HistoryWriter::Parts Run::start() {
 void Run::stiffen() {
   if (!scene_.rigid) return;
   if (progress_.rigid.passes.empty()) {
-    progress_.rigid =
-        find_rigid_limit(scene_.model, scene_.time, settings_.threads, settings_.stop_if);
+    try {
+      progress_.rigid =
+          find_rigid_limit(scene_.model, scene_.time, settings_.threads, settings_.stop_if);
+    } catch (const Unrunnable& error) {
+      throw scene_.error_at("/" + error.key(), error.what());
+    }
   }
   const double own = scene_.model.contact.normal_stiffness;
   scene_.model = stiffened(std::move(scene_.model), progress_.rigid.passes.back().stiffness / own);
@@ -269,6 +273,18 @@ double Run::next_load_time() const {
                       : scene_.time.end;
 }
 
+namespace {
+
+[[noreturn]] void refuse_search(double tolerance, double time) {
+  throw Unstable(fmt::format(
+      "Newton's method finds no equilibrium at t = {:.9g} s, although no body moves away from the "
+      "last one: this is no collapse. Another contact.normal_stiffness, or a time.tolerance above "
+      "{:g}, may help",
+      time, tolerance));
+}
+
+}  // namespace
+
 // As far as the loads can grow; after the last of these steps the run has ended.
 bool Run::automatic_load_step() {
   LoadPath& path = progress_.load_path;
@@ -289,6 +305,7 @@ bool Run::automatic_load_step() {
       return true;
     }
     if (path.missed(before, time)) {
+      if (!is_mechanism(scene_.model, state(), motion)) refuse_search(scene_.time.tolerance, time);
       end_by_collapse(time, std::move(motion));
       return true;
     }
