@@ -3,7 +3,8 @@
 
     masonry.py arch N T/R [ANGLE] > arch.json        the angle of embrace in degrees, 180 unless given
     masonry.py wall ROWS BLOCKS MU [WIDTH HEIGHT] > wall.json
-    masonry.py thickness N [APOTHEM]                  the least T/R of a semicircle, by runs of the program
+    masonry.py thickness N [APOTHEM]                  the least T/R of a semicircle of N voussoirs, by runs of the
+                                                      program
 
 See docs/how-to/masonry.md.
 """
@@ -12,6 +13,7 @@ import math
 import subprocess
 import sys
 import tempfile
+import os
 
 DENSITY = 2500
 GRAVITY = 9.81
@@ -87,3 +89,65 @@ def wall(rows, blocks, friction, width=.4, height=.2):
     bodies += [{"name": f"block {i}", "material": "rock", "polygon": ring} for i, ring in enumerate(rings[1:])]
     return scene("wall", bodies, friction,
                  {"value": [0, -GRAVITY], "direction_history": [[0, 0], [1.5, 1.5]]}, end=1.5)
+
+
+def stands(n, thickness, stiffness, program):
+    """Whether a semicircle of this thickness carries its own weight, by a static run."""
+    scene_ = arch(n, thickness)
+    scene_["gravity"] = [0, -GRAVITY]
+    scene_["contact"] = {"normal_stiffness": stiffness, "friction": {"coefficient": 1}}
+    scene_["output"] = {"history": {"track": []}}
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "arch.json")
+        with open(path, "w") as file:
+            json.dump(scene_, file)
+        done = subprocess.run([program, "run", path, "-o", os.path.join(folder, "out"), "--quiet"],
+                              capture_output=True, text=True, check=False)
+    if done.returncode == 3 and "collapses at load factor" in done.stderr:
+        return False
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    return True
+
+
+def least_at(n, stiffness, program, tolerance=2e-6):
+    """The least T/R at one stiffness, by bisection."""
+    low, high = .09, .14
+    while high - low > tolerance:
+        middle = (low + high) / 2
+        if stands(n, middle, stiffness, program):
+            high = middle
+        else:
+            low = middle
+    return (low + high) / 2
+
+
+def extrapolate(values):
+    """The parabola in k_n^(-1/3) through three values, each with ten times the stiffness of the one before."""
+    x = [10**(-i / 3) for i in range(3)]
+    return sum(v * math.prod(b / (b - a) for b in x if b != a) for v, a in zip(values, x))
+
+
+def least_thickness(n, program):
+    """The least T/R for rigid voussoirs, its error, and the values at the stiffnesses that it is from."""
+    values = [least_at(n, k, program) for k in (1e9, 1e10, 1e11, 1e12)]
+    value = extrapolate(values[1:])
+    return value, abs(value - extrapolate(values[:3])), values
+
+
+def main():
+    words = sys.argv[1:]
+    if len(words) >= 3 and words[0] == "arch":
+        angle = math.radians(float(words[3])) if len(words) > 3 else math.pi
+        print(json.dumps(arch(int(words[1]), float(words[2]), angle), indent=1))
+    elif len(words) >= 4 and words[0] == "wall":
+        print(json.dumps(wall(int(words[1]), int(words[2]), *map(float, words[3:])), indent=1))
+    elif len(words) >= 2 and words[0] == "thickness":
+        value, error, each = least_thickness(int(words[1]), words[2] if len(words) > 2 else "apothem")
+        print(f"least T/R {value:.6f} +- {error:.6f}; with k_n 1e9 to 1e12: " + ", ".join(f"{t:.5f}" for t in each))
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main()

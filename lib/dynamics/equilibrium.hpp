@@ -147,9 +147,9 @@ class Equilibrium {
   ContactTerm* contact_;
   double tolerance_;
   bool settling_ = false;
-  bool near_ = false;       // only an equilibrium near the last one is sought
-  double driven_way_ = 0;   // of prescribed motion in this load step, m
-  size_t first_;  // coordinate of the nodes
+  bool near_ = false;      // only an equilibrium near the last one is sought
+  double driven_way_ = 0;  // of prescribed motion in this load step, m
+  size_t first_;           // coordinate of the nodes
   // A rigid body that moves along one direction: a wall that holds a force, or, in a settled start,
   // a body that slides, across its velocity.
   struct Rail {

@@ -23,10 +23,10 @@ constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalv
               kMostShortened = 60, kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
-constexpr double kPolish = 1e-6;  // of the shift, from an equilibrium to round-off
-constexpr double kReach = 0.5;    // of a rigid body's inradius
+constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
+constexpr double kReach = 0.5;       // of a rigid body's inradius
 constexpr double kNearReach = 1e-3;  // of that, where the equilibrium is near
-constexpr double kNodeReach = 8;  // of the shortest edge
+constexpr double kNodeReach = 8;     // of the shortest edge
 // Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
 constexpr double kMeshGrowth = 100;
 // Of a step in time: forces out of balance over all forces, and places.

@@ -70,7 +70,7 @@ struct Model {
   LoadHistory gravity_history;  ///< of its factor
   /// What gravity is the sum of, where its direction changes; else empty.
   std::vector<GravityPart> gravity_parts;
-  double thickness = 1;         ///< m
+  double thickness = 1;  ///< m
   std::vector<Material> materials;
   ContactLaw contact;
   std::vector<RigidBody> bodies;

@@ -25,12 +25,12 @@ struct TimeSettings {
   std::optional<double> safety = {}, element_safety = {};
   /// Corrects steps in which a contact begins or ends (contact/law/event_impulse.hpp).
   bool onsets = true;
-  bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
-  bool statics = false;         ///< a sequence of equilibria (dynamics/equilibrium.cpp)
-  int load_steps = 10;          ///< of a static run
+  bool settled = false;               ///< start in equilibrium (dynamics/settle.cpp)
+  bool statics = false;               ///< a sequence of equilibria (dynamics/equilibrium.cpp)
+  int load_steps = 10;                ///< of a static run
   bool automatic_load_steps = false;  ///< their number follows from the path (run/load_path.hpp)
-  double tolerance = 1e-6;      ///< of its forces out of balance, parts of the loads
-  double longest_step = 1e300;  ///< s; of an automatic step: the interval of the history
+  double tolerance = 1e-6;            ///< of its forces out of balance, parts of the loads
+  double longest_step = 1e300;        ///< s; of an automatic step: the interval of the history
 };
 
 struct OutputSettings {

@@ -56,7 +56,8 @@ struct RunProgress {
   void fields(Archive& archive) {
     archive("histories", histories)("frame_times", frame_times)("next_row", next_row)(
         "next_frame", next_frame)("last_row", last_row)("last_frame", last_frame)(
-        "load_steps", load_steps)("load_path", load_path)("rigid", rigid)("beginning", beginning)("forces", forces);
+        "load_steps", load_steps)("load_path", load_path)("rigid", rigid)("beginning", beginning)(
+        "forces", forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };

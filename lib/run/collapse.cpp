@@ -10,9 +10,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kMoves = 0.01;   // of the longest way
+constexpr double kMoves = 0.01;      // of the longest way
 constexpr double kMechanism = 0.01;  // of an inradius
-constexpr double kShown = 0.05;   // of the size of all free bodies
+constexpr double kShown = 0.05;      // of the size of all free bodies
 
 // The mean motion of the nodes of a deformable body, and the longest way of one.
 MovingBody motion_of_nodes(const Model& model, const State& state, DeformableIndex d,
@@ -37,8 +37,8 @@ std::vector<MovingBody> all_bodies(const Model& model, const State& state,
     for (const Vec2& v : model.bodies[static_cast<size_t>(i)].potential.vertices) {
       radius = std::max(radius, v.norm());
     }
-    all.push_back({i, way[0], way[1], way[2],
-                   Vec2(way[0], way[1]).norm() + radius * std::abs(way[2])});
+    all.push_back(
+        {i, way[0], way[1], way[2], Vec2(way[0], way[1]).norm() + radius * std::abs(way[2])});
   }
   for (DeformableIndex d = 0; d < static_cast<DeformableIndex>(model.deformables.size()); ++d) {
     all.push_back(motion_of_nodes(model, state, d, motion));
@@ -88,9 +88,9 @@ double shown_scale(const Model& model, const State& state, const std::vector<dou
 
 std::string describe(const Model& model, const State& state, const Collapse& collapse) {
   const std::vector<MovingBody> moving = moving_bodies(model, state, collapse.motion);
-  std::string text = fmt::format("collapses at load factor {:.6g} (between {:.6g} and {:.6g})",
-                                 collapse.factor(), collapse.factor() - collapse.error(),
-                                 collapse.factor() + collapse.error());
+  std::string text =
+      fmt::format("collapses at load factor {:.6g} (between {:.6g} and {:.6g})", collapse.factor(),
+                  collapse.factor() - collapse.error(), collapse.factor() + collapse.error());
   if (moving.empty()) return text;
   const auto most = std::ranges::max_element(moving, {}, &MovingBody::most);
   return text + fmt::format(": {} of {} bodies move, \"{}\" most; the last frame shows how",

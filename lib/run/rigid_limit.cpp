@@ -13,8 +13,8 @@ namespace apothem {
 namespace {
 
 constexpr double kStiffer = 10;
-constexpr size_t kFewest = 4;          // passes
-constexpr double kRounded = 1e-6;      // of the weight
+constexpr size_t kFewest = 4;                     // passes
+constexpr double kRounded = 1e-6;                 // of the weight
 constexpr double kFlattest = 0.2, kSteepest = 1;  // exponents that are believed
 
 using Three = std::span<const double, 3>;
@@ -112,7 +112,7 @@ namespace {
 // One pass: the load path to its end or to the limit. Returns where the bodies are in the end, or
 // nothing if an equilibrium has not been found.
 std::optional<State> walk(const Model& model, const TimeSettings& time, int threads,
-           const std::function<bool()>& stop, RigidPass& pass) {
+                          const std::function<bool()>& stop, RigidPass& pass) {
   Simulation simulation(model, time, 1, threads, stop);
   LoadPath path(time.end);
   std::vector<double> motion;
@@ -177,9 +177,10 @@ RigidLimit find_rigid_limit(const Model& model, const TimeSettings& time, int th
     if (stands_still(limit)) break;
   }
   if (limit.passes.empty()) {
-    throw Unrunnable("Newton's method finds no equilibrium under the first loads, although no body "
-                     "moves away; another contact.normal_stiffness may help",
-                     "contact/normal_stiffness", -1);
+    throw Unrunnable(
+        "Newton's method finds no equilibrium under the first loads, although no body "
+        "moves away; another contact.normal_stiffness may help",
+        "contact/normal_stiffness", -1);
   }
   return limit;
 }

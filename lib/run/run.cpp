@@ -334,7 +334,12 @@ void Run::write_mechanism() {
   const Simulation& s = *simulation_;
   const std::vector<CauchyStress> stresses = s.stresses();
   const std::vector<BodyForce> none(scene_.model.bodies.size() + scene_.model.deformables.size());
-  frames_->write({shown, {}, stresses, s.surfaces(), none, s.node_mass(),
+  frames_->write({shown,
+                  {},
+                  stresses,
+                  s.surfaces(),
+                  none,
+                  s.node_mass(),
                   body_statistics(scene_.model, shown, {}, stresses)});
 }
 

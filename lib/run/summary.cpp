@@ -91,8 +91,7 @@ Json rigid_limit(const Run& run) {
   for (const RigidPass& pass : limit.passes) {
     Json entry{{"normal_stiffness", pass.stiffness}, {"collapse", nullptr}};
     if (pass.collapsed) {
-      entry["collapse"] = {
-          {"factor", pass.factor()}, {"lower", pass.lower}, {"upper", pass.upper}};
+      entry["collapse"] = {{"factor", pass.factor()}, {"lower", pass.lower}, {"upper", pass.upper}};
     }
     passes.push_back(std::move(entry));
   }

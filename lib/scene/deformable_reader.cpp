@@ -54,8 +54,9 @@ namespace {
 LoadHistory read_factors(const JsonReader& in, const JsonValue& value, const char* row,
                          const char* without) {
   LoadHistory history;
-  rows(in, value, 2, row,
-       [&](const std::vector<double>& p) { history.points.push_back({p[0], p[1]}); });
+  rows(in, value, 2, row, [&](const std::vector<double>& p) {
+    history.points.push_back({p[0], p[1]});
+  });
   if (history.points.empty()) {
     in.fail(value, std::string("must hold at least one row; leave it out for ") + without);
   }
