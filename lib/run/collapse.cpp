@@ -91,6 +91,12 @@ std::string describe(const Model& model, const State& state, const Collapse& col
   std::string text =
       fmt::format("collapses at load factor {:.6g} (between {:.6g} and {:.6g})", collapse.factor(),
                   collapse.factor() - collapse.error(), collapse.factor() + collapse.error());
+  if (!std::isfinite(collapse.error())) {
+    text = fmt::format(
+        "collapses at load factor {:.6g} with the stiffest contacts that have found "
+        "equilibria; too few others tell what rigid bodies do",
+        collapse.factor());
+  }
   if (moving.empty()) return text;
   const auto most = std::ranges::max_element(moving, {}, &MovingBody::most);
   return text + fmt::format(": {} of {} bodies move, \"{}\" most; the last frame shows how",

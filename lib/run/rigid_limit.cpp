@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStiffer = 10;
 constexpr size_t kFewest = 4;                     // passes
-constexpr double kRounded = 1e-6;                 // of the weight
+constexpr double kRounded = 5e-7;                 // of the weight
 constexpr double kFlattest = 0.2, kSteepest = 1;  // exponents that are believed
 
 using Three = std::span<const double, 3>;
@@ -48,14 +48,18 @@ Estimate by_ratio(Three f, double noise) {
 }  // namespace
 
 Estimate extrapolate(std::span<const double> values, double noise) {
-  const Three now = values.last<3>(), before = values.first(values.size() - 1).last<3>();
-  Estimate best{0, HUGE_VAL};
-  for (Estimate (*const law)(Three, double) : {by_thirds, by_ratio}) {
-    Estimate e = law(now, noise);
-    e.error += std::abs(e.value - law(before, noise).value);
-    if (e.error < best.error) best = e;
+  const Three now = values.last<3>();
+  const Estimate thirds = by_thirds(now, noise), ratio = by_ratio(now, noise);
+  if (values.size() == 3) {
+    return {thirds.value,
+            std::max(thirds.error, ratio.error) + std::abs(thirds.value - ratio.value)};
   }
-  return best;
+  const Three before = values.first(values.size() - 1).last<3>();
+  const double thirds_error =
+      thirds.error + std::abs(thirds.value - by_thirds(before, noise).value);
+  const double ratio_error = ratio.error + std::abs(ratio.value - by_ratio(before, noise).value);
+  return thirds_error <= ratio_error ? Estimate{thirds.value, thirds_error}
+                                     : Estimate{ratio.value, ratio_error};
 }
 
 std::optional<Estimate> RigidLimit::factor() const {
@@ -70,7 +74,7 @@ std::optional<Estimate> RigidLimit::factor() const {
     values.push_back(pass.factor());
     noise = std::max(noise, (pass.upper - pass.lower) / 2);
   }
-  if (values.size() < kFewest) return {};
+  if (values.size() < kFewest - 1) return {};
   return extrapolate(values, noise);
 }
 
@@ -154,6 +158,7 @@ bool stands_still(const RigidLimit& limit) {
     return !limit.passes[limit.passes.size() - 2].collapsed &&
            limit.change <= RigidLimit::kTolerance;
   }
+  if (limit.passes.size() < kFewest) return false;
   const std::optional<Estimate> factor = limit.factor();
   return factor && factor->error <= RigidLimit::kTolerance * std::abs(factor->value);
 }

@@ -22,10 +22,11 @@ struct Estimate {
   double value = 0, error = 0;
 };
 
-/// What values at stiffnesses that grow by a factor of 10 tend to; at least four, each known to
+/// What values at stiffnesses that grow by a factor of 10 tend to; at least three, each known to
 /// within +- `noise`. Two laws are tried: a + b k^(-1/3) + c k^(-2/3), and a + b k^(-p) with the
 /// exponent p that the last three values show. The one that has changed less with the last value
-/// is taken; this change and what it makes of the noise are its error.
+/// is taken; this change and what it makes of the noise are its error. Of three values alone the
+/// first law is taken, and the difference of the laws instead of the change.
 Estimate extrapolate(std::span<const double> values, double noise);
 
 /// The same run with the stiffnesses of the scene times `scale`.
@@ -49,15 +50,15 @@ struct RigidLimit {
   void fields(Archive& archive) { archive("passes", passes)("change", change); }
 
   [[nodiscard]] bool collapses() const { return !passes.empty() && passes.back().collapsed; }
-  /// Of the load factor at collapse; nothing if fewer than four passes tell.
+  /// Of the load factor at collapse; nothing if fewer than three passes tell.
   [[nodiscard]] std::optional<Estimate> factor() const;
 };
 
 /// The model with the stiffnesses of all contacts and friction springs times `scale`.
 Model stiffened(Model model, double scale);
 
-/// The largest k_n (Pa) for which the rounding of places moves no body by more than a millionth of
-/// its weight.
+/// The largest k_n (Pa) for which the rounding of places changes the forces on no body by more
+/// than a two-millionth of its weight.
 double stiffest(const Model& model);
 
 /// Passes from the model's own stiffness on, or from a thousandth of stiffest() if that is less,

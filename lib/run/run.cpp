@@ -315,7 +315,10 @@ bool Run::automatic_load_step() {
 void Run::end_by_collapse(double upper, std::vector<double> motion) {
   const double scale = shown_scale(scene_.model, state(), motion);
   collapse_ = {state().time, upper, std::move(motion), scale};
-  if (scene_.rigid) collapse_->rigid = progress_.rigid.factor();
+  if (scene_.rigid) {
+    const double here = collapse_->factor();
+    collapse_->rigid = progress_.rigid.factor().value_or(Estimate{here, HUGE_VAL});
+  }
   stopped_by_ = kStoppedCollapse;
   message_ = describe(scene_.model, state(), *collapse_);
   write_mechanism();

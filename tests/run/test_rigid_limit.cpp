@@ -100,7 +100,7 @@ TEST_CASE("a block on a tilting table topples or slides at the angle of theory",
        {std::tuple(.4, .8, std::atan(.4)), std::tuple(.9, .3, std::atan(.3))}) {
     Run run(scene_of(folder,
                      text_of({width, 1, friction, R"(, "rigid": true)", R"("tolerance": 1e-6)"})),
-            {folder.path("out" + std::to_string(width))});
+            {folder.path() + "/" + "out" + std::to_string(width)});
     CHECK(run.run() == Run::Status::done);
     CHECK(run.stopped_by() == "collapse");
     const Collapse* const collapse = run.collapse();
@@ -134,7 +134,7 @@ TEST_CASE("a block on a tilting table topples or slides at the angle of theory",
 TEST_CASE("loads that can be carried end with their last step", "[rigid_limit]") {
   const Folder folder;
   Run run(scene_of(folder, text_of({2, .5, 1.6, R"(, "rigid": true)", R"("tolerance": 1e-6)"})),
-          {folder.path("out")});
+          {folder.path() + "/" + "out"});
   CHECK(run.run() == Run::Status::done);
   CHECK(run.collapse() == nullptr);
   CHECK(run.stopped_by().empty());
@@ -154,7 +154,7 @@ TEST_CASE("a scene may promise the load factor of its collapse", "[rigid_limit]"
     "measure": [{ "name": "fell", "stopped_by": "collapse" }, { "name": "at", "quantity": "collapse.factor" }])";
   Parts parts;
   parts.rest = promise;
-  Run run(scene_of(folder, text_of(parts)), {folder.path("out")});
+  Run run(scene_of(folder, text_of(parts)), {folder.path() + "/" + "out"});
   CHECK(run.run() == Run::Status::done);
   CHECK(run.seeks_collapse());
   REQUIRE(run.outcomes().size() == 2);
@@ -171,12 +171,12 @@ TEST_CASE("a load path that is stopped goes on bit for bit", "[rigid_limit]") {
   const Folder folder;
   Parts parts;
   parts.contact = R"(, "rigid": true)";
-  Run whole(scene_of(folder, text_of(parts)), {folder.path("whole")});
+  Run whole(scene_of(folder, text_of(parts)), {folder.path() + "/" + "whole"});
   whole.run();
-  Run first(scene_of(folder, text_of(parts)), {folder.path("part")});
+  Run first(scene_of(folder, text_of(parts)), {folder.path() + "/" + "part"});
   CHECK(first.run(.25) == Run::Status::interrupted);
   CHECK(first.state().time > 0);
-  RunSettings settings{folder.path("part")};
+  RunSettings settings{folder.path() + "/" + "part"};
   settings.resume = true;
   Run second(scene_of(folder, text_of(parts)), settings);
   second.run();
