@@ -92,7 +92,8 @@ def wall(rows, blocks, friction, width=.4, height=.2):
 
 
 def stands(n, thickness, stiffness, program):
-    """Whether a semicircle of this thickness carries its own weight, by a static run."""
+    """Whether a semicircle of this thickness carries its own weight, by a static run; None if the run finds neither an
+    equilibrium nor a mechanism, as it may happen next to the limit."""
     scene_ = arch(n, thickness)
     scene_["gravity"] = [0, -GRAVITY]
     scene_["contact"] = {"normal_stiffness": stiffness, "friction": {"coefficient": 1}}
@@ -105,34 +106,41 @@ def stands(n, thickness, stiffness, program):
                               capture_output=True, text=True, check=False)
     if done.returncode == 3 and "collapses at load factor" in done.stderr:
         return False
+    if done.returncode == 3 and "finds no equilibrium" in done.stderr:
+        return None
     if done.returncode != 0:
         sys.exit(done.stderr)
     return True
 
 
-def least_at(n, stiffness, program, tolerance=2e-6):
-    """The least T/R at one stiffness, by bisection."""
+def least_at(n, stiffness, program, tolerance=5e-6):
+    """The least T/R at one stiffness, and how exactly it is known, by bisection. It ends early where a run does not tell."""
     low, high = .09, .14
     while high - low > tolerance:
         middle = (low + high) / 2
-        if stands(n, middle, stiffness, program):
+        verdict = stands(n, middle, stiffness, program)
+        if verdict is None:
+            break
+        if verdict:
             high = middle
         else:
             low = middle
-    return (low + high) / 2
+    return (low + high) / 2, (high - low) / 2
 
 
 def extrapolate(values):
     """The parabola in k_n^(-1/3) through three values, each with ten times the stiffness of the one before."""
     x = [10**(-i / 3) for i in range(3)]
-    return sum(v * math.prod(b / (b - a) for b in x if b != a) for v, a in zip(values, x))
+    weights = [math.prod(b / (b - a) for b in x if b != a) for a in x]
+    return (sum(w * value for w, (value, _) in zip(weights, values)),
+            sum(abs(w) * error for w, (_, error) in zip(weights, values)))
 
 
 def least_thickness(n, program):
     """The least T/R for rigid voussoirs, its error, and the values at the stiffnesses that it is from."""
     values = [least_at(n, k, program) for k in (1e9, 1e10, 1e11, 1e12)]
-    value = extrapolate(values[1:])
-    return value, abs(value - extrapolate(values[:3])), values
+    value, error = extrapolate(values[1:])
+    return value, error + abs(value - extrapolate(values[:3])[0]), [v for v, _ in values]
 
 
 def main():

@@ -135,7 +135,7 @@ TEST_CASE("a body falls in gravity that turns, and the ledgers close", "[gravity
   model.gravity_parts = {part, shake};
   model.gravity = model.gravity_at(0);
   add(model, "block", flat_block());
-  add(model, "slope", samples::block(-10, -5, 20, 1), Motion::fixed);
+  add(model, "slope", samples::block(-10, -21, 20, -20), Motion::fixed);
   TimeSettings time;
   time.end = 1;
   time.fixed_step = 1e-4;

