@@ -28,7 +28,7 @@ RIGID, MESHED, MESH = "definitions/rigid_body", "definitions/deformable_body", "
 PRESCRIBED = RIGID + "/properties/motion/anyOf/1"
 OBJECTS = [
     ("The scene", "", ""),
-    ("Gravity that changes", "gravity", "properties/gravity/oneOf/1"),
+    ("Gravity that changes", "gravity", "definitions/gravity"),
     ("Materials", "materials.NAME", "properties/materials/additionalProperties"),
     ("Damping of a material", "materials.NAME.damping",
      "properties/materials/additionalProperties/properties/damping"),

@@ -41,8 +41,11 @@ std::string progress_of(const Run& run, double end, double seconds, bool bar) {
 
 void print_load_step(const Run& run) {
   const LoadStep& step = run.load_steps().back();
-  fmt::print(stderr, "load step {} of {}: {} {}, residual {:.2g}, sum of forces {:.2g} on \"{}\"\n",
-             run.state().step, run.scene().time.load_steps, step.iterations,
+  const TimeSettings& time = run.scene().time;
+  const std::string of = time.automatic_load_steps ? fmt::format("to t = {:.6g} s", step.time)
+                                                   : fmt::format("of {}", time.load_steps);
+  fmt::print(stderr, "load step {} {}: {} {}, residual {:.2g}, sum of forces {:.2g} on \"{}\"\n",
+             run.state().step, of, step.iterations,
              step.relaxed ? "steps of relaxation" : "iterations", step.residual, step.imbalance,
              run.scene().model.name_of(step.worst));
 }
@@ -122,6 +125,7 @@ int exit_code_of(const Run& run, bool verify) {
     default:
       break;
   }
+  if (run.collapse() && !run.seeks_collapse()) return exit_code::unstable;
   const auto missed = [](const Outcome& o) { return !o.met; };
   return verify && std::ranges::any_of(run.outcomes(), missed) ? exit_code::missed
                                                                : exit_code::done;

@@ -27,7 +27,7 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> n
   for (const DeformableBody& body : model.deformables) {
     add_nodes(body, node_mass.subspan(static_cast<size_t>(body.first_node)));
   }
-  if (model.gravity == Vec2::Zero()) acceleration_.clear();
+  if (!model.has_gravity()) acceleration_.clear();
   weight_ = acceleration_;
   for (size_t c = 0; c < weight_.size(); ++c) {
     if (can_move(c)) weight_[c] /= inverse_mass_[c];
@@ -157,6 +157,33 @@ void DegreesOfFreedom::scale_gravity(double factor) {
   }
   const Impulse& full = full_weight_at_start_;
   weight_at_start_ = {factor * full.x, factor * full.y, factor * full.angular};
+}
+
+// Its factor is 1 from now on.
+void DegreesOfFreedom::set_gravity(const Vec2& value) {
+  const size_t rigid = layout_.node(0);
+  const auto on = [&](size_t c) {
+    if (c >= rigid) return value[static_cast<Eigen::Index>((c - rigid) % 2)];
+    return c % 3 == 2 ? 0 : value[static_cast<Eigen::Index>(c % 3)];
+  };
+  for (size_t c = 0; c < weight_.size(); ++c) {
+    acceleration_[c] = can_move(c) ? on(c) : 0;
+    weight_[c] = acceleration_[c] * mass_[c];
+    if (!given_acceleration_.empty()) given_acceleration_[c] = is_held(c) ? 0 : on(c);
+  }
+  weight_at_start_ = weight_at_start(weight_);
+}
+
+Vec2 DegreesOfFreedom::mass_moved(const State& state) const {
+  Vec2 sum = Vec2::Zero();
+  const size_t rigid = layout_.node(0);
+  for (size_t c = 0; c < layout_.size(); ++c) {
+    if (!can_move(c) || (c < rigid && c % 3 == 2)) continue;
+    const double moved = displaced_.empty() ? state.x[c] : state.x[c] - displaced_[c];
+    sum[static_cast<Eigen::Index>(c < rigid ? c % 3 : (c - rigid) % 2)] +=
+        mass_[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : moved);
+  }
+  return sum;
 }
 
 State DegreesOfFreedom::start() const {

@@ -80,6 +80,10 @@ class DegreesOfFreedom {
   [[nodiscard]] double mass(size_t coordinate) const { return mass_[coordinate]; }
   /// Gravity becomes `factor` times that of the model.
   void scale_gravity(double factor);
+  /// Gravity becomes `value` (m/s^2); not for models whose gravity is scaled.
+  void set_gravity(const Vec2& value);
+  /// Sum of mass times displacement since time 0 of what gravity moves, kg m.
+  [[nodiscard]] Vec2 mass_moved(const State& state) const;
   /// Of gravity on coordinates that can move, m/s^2; empty without gravity.
   [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
   /// The same as forces, N; empty without gravity.

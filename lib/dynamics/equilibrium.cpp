@@ -21,6 +21,7 @@ constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
 constexpr double kRigidNoise = 8;                // times that: corners are turned and moved
 constexpr double kFar = 100;                     // of the scene's size: there a body is lost
+constexpr double kNear = 0.25;                   // of a body's inradius
 // What bodies have slipped that move at a settled start, the fastest one, of the scene's size. It
 // saturates every spring: a body that is dragged along is lost before it has gone so far.
 constexpr double kSlide = 1e3 * kFar;
@@ -303,12 +304,58 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
                            const std::function<bool()>& stop) {
   const State before = state;
   LoadStep result = solve(state, before, time, stop);
-  if (!result.complete) {
-    state = before;
-    if (contact_) contact_->drop_trial();
-    for (const auto& term : terms_) term->refresh(state);
+  if (result.complete) {
+    book(before, state, ledger);
+  } else {
+    go_back(state, before);
+  }
+  return result;
+}
+
+LoadStep Equilibrium::find_near(State& state, Ledger& ledger, double time,
+                                const std::function<bool()>& stop, std::vector<double>& motion) {
+  const State before = state;
+  LoadStep result{time};
+  near_ = true;
+  driven_way_ = driven_way(before.time, time);
+  ++state.step;
+  const Verdict verdict = newton(state, before, time, stop, result);
+  near_ = false;
+  result.found = verdict != Verdict::failed;
+  keep(verdict == Verdict::found, result);
+  if (verdict == Verdict::found) {
+    book(before, state, ledger);
     return result;
   }
+  if (!result.found) {
+    result.complete = true;
+    motion.resize(state.x.size());
+    for (size_t c = 0; c < motion.size(); ++c) motion[c] = state.x[c] - before.x[c];
+  }
+  go_back(state, before);
+  return result;
+}
+
+// Whether a free rigid body has left the neighbourhood of the last equilibrium.
+bool Equilibrium::strays(const State& state, const State& before) const {
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    const RigidBody& body = model_.bodies[i];
+    if (body.motion != Motion::free) continue;
+    const Eigen::Vector3d way = state.pose(i) - before.pose(i);
+    const double moved = hypotenuse(way[0], way[1]) + radius()[i] * std::abs(way[2]);
+    if (!(moved <= kNear * body.inradius + driven_way_)) return true;
+  }
+  return false;
+}
+
+// The state before a search that was stopped, or has found nothing.
+void Equilibrium::go_back(State& state, const State& before) {
+  state = before;
+  if (contact_) contact_->drop_trial();
+  for (const auto& term : terms_) term->refresh(state);
+}
+
+void Equilibrium::book(const State& before, const State& state, Ledger& ledger) {
   // The ledger itself knows the work of prescribed motion, and terms know that of gravity.
   const std::vector<double> now = loads();
   double work = 0;
@@ -317,7 +364,6 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   }
   ledger.add_work(work);
   outside_ = now;
-  return result;
 }
 
 void Equilibrium::fields(Archive& archive) {
@@ -372,9 +418,7 @@ bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& st
     state.v = before.v;
     return true;
   }
-  state = before;
-  if (contact_) contact_->drop_trial();
-  for (const auto& term : terms_) term->refresh(state);
+  go_back(state, before);
   return false;
 }
 

@@ -32,6 +32,12 @@ class Equilibrium {
   /// so: the next call with the same time goes on where it has stopped, bit for bit. Throws
   /// Unstable if there is no equilibrium in reach; the state is then not to be trusted.
   LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
+  /// The same by Newton's method alone, for an equilibrium near that of `state`: no free rigid body
+  /// moves farther than prescribed motion does and a part of its inradius. If there is none,
+  /// LoadStep::found is false, the state is as it was, and `motion` is the way that the bodies have
+  /// begun to go instead: a change of all coordinates.
+  LoadStep find_near(State& state, Ledger& ledger, double time, const std::function<bool()>& stop,
+                     std::vector<double>& motion);
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
   void settle(State& state, const std::function<bool()>& stop);
@@ -89,6 +95,7 @@ class Equilibrium {
   void begin_longer_step(const State& state, NewtonPath& path);
   bool begin_shorter_step(State& state, NewtonPath& path);
   double shifted_residual(const State& state, const NewtonPath& path);
+  [[nodiscard]] double rounded_residual(const State& state) const;
   [[nodiscard]] double shortened(const std::vector<double>& step) const;
   [[nodiscard]] double reach(size_t coordinate) const;
   [[nodiscard]] double first_shift() const;
@@ -97,6 +104,10 @@ class Equilibrium {
   [[nodiscard]] bool is_round_off(const State& state, const std::vector<double>& step) const;
   [[nodiscard]] double size_of_forces() const;
   void keep(bool complete, LoadStep& result);
+  [[nodiscard]] bool strays(const State& state, const State& before) const;
+  [[nodiscard]] double driven_way(double from, double until) const;
+  void go_back(State& state, const State& before);
+  void book(const State& before, const State& state, Ledger& ledger);
   LoadStep solve(State& state, const State& before, double time, const std::function<bool()>& stop);
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
@@ -136,7 +147,9 @@ class Equilibrium {
   ContactTerm* contact_;
   double tolerance_;
   bool settling_ = false;
-  size_t first_;  // coordinate of the nodes
+  bool near_ = false;      // only an equilibrium near the last one is sought
+  double driven_way_ = 0;  // of prescribed motion in this load step, m
+  size_t first_;           // coordinate of the nodes
   // A rigid body that moves along one direction: a wall that holds a force, or, in a settled start,
   // a body that slides, across its velocity.
   struct Rail {

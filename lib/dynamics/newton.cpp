@@ -20,12 +20,13 @@ constexpr double kLeastShare = 1e-4;  // of a load step
 constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
 constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalvings = 6,
-              kMostShortened = 60;
+              kMostShortened = 60, kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
-constexpr double kPolish = 1e-6;  // of the shift, from an equilibrium to round-off
-constexpr double kReach = 0.5;    // of a rigid body's inradius
-constexpr double kNodeReach = 8;  // of the shortest edge
+constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
+constexpr double kReach = 0.5;       // of a rigid body's inradius
+constexpr double kNearReach = 1e-3;  // of that, where the equilibrium is near
+constexpr double kNodeReach = 8;     // of the shortest edge
 // Of the residual in an iteration. Rigid bodies meet and part with all their stiffness.
 constexpr double kMeshGrowth = 100;
 // Of a step in time: forces out of balance over all forces, and places.
@@ -61,6 +62,22 @@ double Equilibrium::shifted_residual(const State& state, const NewtonPath& path)
   return std::sqrt(sum);
 }
 
+// What the rounding of places leaves of the residual: they are answered with the stiffness of the
+// contacts. A step that ends there is found as exactly as it can be.
+double Equilibrium::rounded_residual(const State& state) const {
+  double sum = 0;
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    const size_t first = state.layout.rigid(i);
+    const double place = std::abs(state.x[first]) + std::abs(state.x[first + 1]) + radius()[i];
+    for (size_t c = first; c < first + 3; ++c) {
+      if (held(c)) continue;
+      const double rounded = kRoundedPlaces * (c == first + 2 ? place / radius()[i] : place);
+      sum += rounded * rounded * lambda_[i] * lambda_[i] * dofs_.mass(c);
+    }
+  }
+  return std::sqrt(sum);
+}
+
 // The share of a step in which no point moves farther than its reach.
 double Equilibrium::shortened(const std::vector<double>& step) const {
   double longest = 1;
@@ -80,7 +97,7 @@ double Equilibrium::first_shift() const {
   for (size_t c = 0; c < rest_.size(); ++c) {
     if (!held(c)) shift = std::max(shift, std::abs(rest_[c]) / dofs_.mass(c) / reach(c));
   }
-  return shift;
+  return near_ ? shift / kNearReach : shift;
 }
 
 // K + M/h^2 at the present places, and its solution. In the first iteration of a share prescribed
@@ -157,7 +174,8 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
       }
     }
     if (path.damped && !path.polishing && path.in_step > 0 &&
-        now <= kStepTolerance * path.at_start) {
+        now <= std::max(kStepTolerance * path.at_start, rounded_residual(state))) {
+      if (near_ && strays(state, before)) return Verdict::failed;
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
@@ -203,13 +221,15 @@ bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) 
 
 void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
   path.base = state.x;
-  path.shift /= kLonger * kLonger;
+  // Near a limit of the loads the way bends with every contact that begins to slip: a step that
+  // was hard to find is not followed by a longer one.
+  if (!near_ || path.in_step <= kEasy) path.shift /= kLonger * kLonger;
   path.in_step = 0;
 }
 
 // Again from where the step began.
 bool Equilibrium::begin_shorter_step(State& state, NewtonPath& path) {
-  if (++path.shortened > kMostShortened) return false;
+  if (++path.shortened > (near_ ? kMostShortenedNear : kMostShortened)) return false;
   state.x = path.base;
   dofs_.place_driven(state);
   path.shift *= kShorter * kShorter;
@@ -248,6 +268,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
       newton_pause_ = std::move(path);
       return Verdict::stopped;
     }
+    if (verdict == Verdict::failed && near_) return verdict;
     path.iteration = 0;
     if (verdict == Verdict::found) {
       if (share == 1) break;

@@ -34,6 +34,11 @@ constexpr std::int64_t kMostSteps = 300'000;
 
 // So many steps that nothing moves more than a stride in one.
 double Equilibrium::ramp(double from, double until) const {
+  return std::max(kRamp, std::ceil(driven_way(from, until) / (kStride * lengths_.shortest())));
+}
+
+// The longest way of a driven coordinate or of a point of a prescribed body, m.
+double Equilibrium::driven_way(double from, double until) const {
   double longest = 0;
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
     if (d.coordinate < first_) continue;
@@ -49,7 +54,7 @@ double Equilibrium::ramp(double from, double until) const {
     longest = std::max(longest,
                        hypotenuse(b[0] - a[0], b[1] - a[1]) + body.reach() * std::abs(b[2] - a[2]));
   }
-  return std::max(kRamp, std::ceil(longest / (kStride * lengths_.shortest())));
+  return longest;
 }
 
 void Equilibrium::find_masses(const State& state) {

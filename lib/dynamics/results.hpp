@@ -79,6 +79,7 @@ struct LoadStep {
   /// the moments over its radius; 0 where it is not free.
   std::vector<double> off{};
   bool complete = true;  ///< false: stopped on the way
+  bool found = true;     ///< false: there is no equilibrium near the last one
 
   void fields(Archive& archive) {
     archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(

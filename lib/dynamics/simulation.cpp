@@ -304,7 +304,19 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
   } catch (const Unstable& error) {
     explain(error);
   }
-  if (!result.complete) return result;
+  if (result.complete) finish_load_step(before, time);
+  return result;
+}
+
+LoadStep Simulation::balance_near(double time, const std::function<bool()>& stop,
+                                  std::vector<double>& motion) {
+  const State before = state_;
+  LoadStep result = equilibrium_->find_near(state_, ledger_, time, stop, motion);
+  if (result.complete && result.found) finish_load_step(before, time);
+  return result;
+}
+
+void Simulation::finish_load_step(const State& before, double time) {
   dofs_.plan_moves(before, time);
   ledger_.book_after_drift(before, 0);
   for (const auto& term : terms_) term->watch(state_);
@@ -313,7 +325,6 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
   ledger_.book_after_drift(state_, 0);
   if (!state_.turns.empty()) note_turns(model_, node_mass(), state_);
   check_energy();
-  return result;
 }
 
 void Simulation::inherit(const FrictionMemory& memory) {

@@ -71,6 +71,10 @@ class Simulation {
   /// the state has not changed then, and the next call goes on with the relaxation. Throws Unstable
   /// if it finds no equilibrium; the state is then not to be trusted.
   LoadStep balance(double time, const std::function<bool()>& stop = {});
+  /// The same, but only to an equilibrium near the last one: see Equilibrium::find_near. The state
+  /// has not changed if it finds none.
+  LoadStep balance_near(double time, const std::function<bool()>& stop,
+                        std::vector<double>& motion);
 
   /// Finds the derivative of minus all forces by the coordinates at the present places, where
   /// friction sticks, and what of the forces on coordinates that can move is out of balance (N and
@@ -137,6 +141,7 @@ class Simulation {
  private:
   void make_terms(int threads);
   void start_ledger();
+  void finish_load_step(const State& before, double time);
   // Work and impulse from outside, with the error of energy and the momentum before they came.
   void book_change(double error, const Impulse& momentum);
   void take_step();

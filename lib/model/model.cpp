@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/model/rotation.hpp"
+
 namespace apothem {
 
 std::array<double, 3> RigidBody::inverse_mass() const {
@@ -42,6 +44,25 @@ MaterialIndex Model::material_of(BodyIndex body) const {
 int Model::node_count() const {
   if (deformables.empty()) return 0;
   return deformables.back().first_node + static_cast<int>(deformables.back().mesh.nodes.size());
+}
+
+Vec2 GravityPart::at(double time) const {
+  const Vec2 now = history.at(time) * value;
+  return tilt.points.empty() ? now : turned(now, -tilt.at(time));
+}
+
+Vec2 Model::gravity_at(double time) const {
+  if (gravity_parts.empty()) return gravity_history.at(time) * gravity;
+  Vec2 sum = Vec2::Zero();
+  for (const GravityPart& part : gravity_parts) sum += part.at(time);
+  return sum;
+}
+
+double Model::strongest_gravity() const {
+  if (gravity_parts.empty()) return gravity.norm() * gravity_history.largest();
+  double sum = 0;
+  for (const GravityPart& part : gravity_parts) sum += part.value.norm() * part.history.largest();
+  return sum;
 }
 
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model) {

@@ -52,12 +52,25 @@ struct RigidBody {
   [[nodiscard]] std::array<double, 3> inverse_mass() const;
 };
 
+/// An acceleration of all bodies: gravity, or that of the ground with the opposite sign.
+struct GravityPart {
+  Vec2 value = Vec2::Zero();  ///< m/s^2, at factor 1
+  LoadHistory history;        ///< of its factor
+  /// Of the angle (rad) by which the table that carries the scene has turned counter-clockwise:
+  /// gravity turns the other way about the scene. May be empty: 0.
+  LoadHistory tilt;
+
+  [[nodiscard]] Vec2 at(double time) const;
+};
+
 struct Model {
   std::string name;
   Vec2 origin = Vec2::Zero();   ///< world coordinates = model coordinates + origin
-  Vec2 gravity = Vec2::Zero();  ///< m/s^2, at factor 1
+  Vec2 gravity = Vec2::Zero();  ///< m/s^2, at factor 1; where it has parts, that of time 0
   LoadHistory gravity_history;  ///< of its factor
-  double thickness = 1;         ///< m
+  /// What gravity is the sum of, where its direction changes; else empty.
+  std::vector<GravityPart> gravity_parts;
+  double thickness = 1;  ///< m
   std::vector<Material> materials;
   ContactLaw contact;
   std::vector<RigidBody> bodies;
@@ -71,10 +84,13 @@ struct Model {
   [[nodiscard]] const std::string& name_of(BodyIndex body) const;
   [[nodiscard]] MaterialIndex material_of(BodyIndex body) const;
 
-  /// Of all times, m/s^2.
-  [[nodiscard]] double strongest_gravity() const {
-    return gravity.norm() * gravity_history.largest();
+  [[nodiscard]] bool has_gravity() const {
+    return gravity != Vec2::Zero() || !gravity_parts.empty();
   }
+  /// m/s^2
+  [[nodiscard]] Vec2 gravity_at(double time) const;
+  /// Of all times, m/s^2; of parts, the sum of their largest sizes.
+  [[nodiscard]] double strongest_gravity() const;
 
   /// Of all deformable bodies.
   [[nodiscard]] int node_count() const;

@@ -25,11 +25,12 @@ struct TimeSettings {
   std::optional<double> safety = {}, element_safety = {};
   /// Corrects steps in which a contact begins or ends (contact/law/event_impulse.hpp).
   bool onsets = true;
-  bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
-  bool statics = false;         ///< a sequence of equilibria (dynamics/equilibrium.cpp)
-  int load_steps = 10;          ///< of a static run
-  double tolerance = 1e-6;      ///< of its forces out of balance, parts of the loads
-  double longest_step = 1e300;  ///< s; of an automatic step: the interval of the history
+  bool settled = false;               ///< start in equilibrium (dynamics/settle.cpp)
+  bool statics = false;               ///< a sequence of equilibria (dynamics/equilibrium.cpp)
+  int load_steps = 10;                ///< of a static run
+  bool automatic_load_steps = false;  ///< their number follows from the path (run/load_path.hpp)
+  double tolerance = 1e-6;            ///< of its forces out of balance, parts of the loads
+  double longest_step = 1e300;        ///< s; of an automatic step: the interval of the history
 };
 
 struct OutputSettings {
@@ -56,6 +57,10 @@ struct StopRule {
 };
 /// What a run is stopped by where a body leaves a world that stops it.
 inline constexpr const char* kStoppedOutside = "outside";
+/// What a static run is stopped by whose loads cannot be carried any more.
+inline constexpr const char* kStoppedCollapse = "collapse";
+/// The load factor at which it collapses, as a quantity of expectations and measures.
+inline constexpr const char* kCollapseFactor = "collapse.factor";
 
 /// Ways to reduce a column to one number, by the names in scenes; in the order of Reduction::Take.
 inline constexpr std::array kTakes{"first", "last",     "min",      "max",  "max_abs",

@@ -10,6 +10,8 @@
 #include "lib/dynamics/body_start.hpp"
 #include "lib/dynamics/simulation.hpp"
 #include "lib/output/history.hpp"
+#include "lib/run/load_path.hpp"
+#include "lib/run/rigid_limit.hpp"
 #include "lib/run/stop_watch.hpp"
 #include "lib/scene/scene.hpp"
 
@@ -45,7 +47,9 @@ struct RunProgress {
   std::int64_t next_row = 1, next_frame = 1;
   std::int64_t last_row = -1, last_frame = -1;  ///< steps of the last ones
   std::vector<LoadStep> load_steps;             ///< of static runs
+  LoadPath load_path;                           ///< likewise
   std::int64_t looks = 0, quiet_looks = 0;      ///< at the motion, and where nobody would notice it
+  RigidLimit rigid;                             ///< of scenes that ask for it
   Beginning beginning;
   std::vector<AddedForce> forces;
   StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
@@ -54,7 +58,7 @@ struct RunProgress {
     archive("histories", histories)("frame_times", frame_times)("next_row", next_row)(
         "next_frame", next_frame)("last_row", last_row)("last_frame", last_frame)(
         "load_steps", load_steps)("looks", looks)("quiet_looks", quiet_looks)(
-        "beginning", beginning)("forces", forces);
+        "load_path", load_path)("rigid", rigid)("beginning", beginning)("forces", forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };

@@ -38,6 +38,7 @@ Run::Run(Scene scene, const RunSettings& settings)
   const HistoryWriter::Parts histories = start();
   scene_.document = JsonValue();  // only errors at the start need their places
   const std::string& folder = settings_.folder;
+  if (!settings_.resume) progress_.load_path = LoadPath(scene_.time.end);
   rows_ =
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
@@ -120,6 +121,12 @@ HistoryWriter::Parts Run::start() {
     other.emplace(settings_.from, settings_.from_time);
     progress_.beginning = other->move_into(scene_);
   }
+  if (other && scene_.rigid) {
+    throw scene_.error_at("/contact/rigid",
+                          "is not supported yet for a run that begins with another one, whose "
+                          "contacts have their own stiffness; leave out --from");
+  }
+  stiffen();
   simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene,
                                 settings_.stop_if);
   if (other) other->hand_contacts_to(*simulation_);
@@ -137,8 +144,26 @@ HistoryWriter::Parts Run::start() {
   return {};
 }
 
+// Results are those of the stiffest pass.
+void Run::stiffen() {
+  if (!scene_.rigid) return;
+  if (progress_.rigid.passes.empty()) {
+    try {
+      progress_.rigid =
+          find_rigid_limit(scene_.model, scene_.time, settings_.threads, settings_.stop_if);
+    } catch (const Unrunnable& error) {
+      throw scene_.error_at("/" + error.key(), error.what());
+    }
+  }
+  const double own = scene_.model.contact.normal_stiffness;
+  scene_.model = stiffened(std::move(scene_.model), progress_.rigid.passes.back().stiffness / own);
+}
+
 void Run::go_on(const std::string& file) {
-  begin_at(scene_.model, read_progress(file).beginning.bodies);
+  const RunProgress progress = read_progress(file);
+  begin_at(scene_.model, progress.beginning.bodies);
+  progress_.rigid = progress.rigid;
+  stiffen();
   simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
   read_state(file, scene_hash_, *simulation_, progress_);
   forces_before_ = progress_.forces;
@@ -246,11 +271,99 @@ void Run::dynamic_step() {
   record(row || last, frame || last);
 }
 
-bool Run::load_step() {
+// Where the next load step ends, s.
+double Run::next_load_time() const {
+  if (scene_.time.automatic_load_steps) return progress_.load_path.next(state().time);
   const std::int64_t count = scene_.time.load_steps, next = state().step + 1;
-  const double time = next < count
-                          ? scene_.time.end * static_cast<double>(next) / static_cast<double>(count)
-                          : scene_.time.end;
+  return next < count ? scene_.time.end * static_cast<double>(next) / static_cast<double>(count)
+                      : scene_.time.end;
+}
+
+namespace {
+
+[[noreturn]] void refuse_search(double tolerance, double time) {
+  throw Unstable(fmt::format(
+      "Newton's method finds no equilibrium at t = {:.9g} s, although no body moves away from the "
+      "last one: this is no collapse. Another contact.normal_stiffness, or a time.tolerance above "
+      "{:g}, may help",
+      time, tolerance));
+}
+
+}  // namespace
+
+// As far as the loads can grow; after the last of these steps the run has ended.
+bool Run::automatic_load_step() {
+  LoadPath& path = progress_.load_path;
+  const auto pause = [&] { return asked_to_stop() || checkpoint_due(); };
+  for (;;) {
+    const double before = state().time, time = path.next(before);
+    std::vector<double> motion;
+    const LoadStep found = simulation_->balance_near(time, pause, motion);
+    if (!found.complete) {
+      if (asked_to_stop()) return false;
+      write_checkpoint();
+      continue;
+    }
+    if (found.found) {
+      path.found(time);
+      progress_.load_steps.push_back(found);
+      record(true, true);
+      return true;
+    }
+    if (path.missed(before, time)) {
+      if (!is_mechanism(scene_.model, state(), motion)) refuse_search(scene_.time.tolerance, time);
+      end_by_collapse(time, std::move(motion));
+      return true;
+    }
+  }
+}
+
+void Run::end_by_collapse(double upper, std::vector<double> motion) {
+  const double scale = shown_scale(scene_.model, state(), motion);
+  collapse_ = {state().time, upper, std::move(motion), scale};
+  if (scene_.rigid) {
+    const double here = collapse_->factor();
+    collapse_->rigid = progress_.rigid.factor().value_or(Estimate{here, HUGE_VAL});
+  }
+  stopped_by_ = kStoppedCollapse;
+  message_ = describe(scene_.model, state(), *collapse_);
+  write_mechanism();
+}
+
+// The last frame: the bodies on their way at the limit. Nothing touches in it, because it is not an
+// equilibrium.
+void Run::write_mechanism() {
+  if (!history_) return;
+  State shown = state();
+  shown.time = collapse_->upper;
+  for (size_t c = 0; c < shown.x.size(); ++c) {
+    shown.x[c] += collapse_->scale * collapse_->motion[c];
+  }
+  collapse_->frame = static_cast<int>(frames_->times().size());
+  const Simulation& s = *simulation_;
+  const std::vector<CauchyStress> stresses = s.stresses();
+  const std::vector<BodyForce> none(scene_.model.bodies.size() + scene_.model.deformables.size());
+  frames_->write({shown,
+                  {},
+                  stresses,
+                  s.surfaces(),
+                  none,
+                  s.node_mass(),
+                  body_statistics(scene_.model, shown, {}, stresses)});
+}
+
+bool Run::seeks_collapse() const {
+  const auto names = [](const Reduction& r) { return r.quantity == kCollapseFactor; };
+  const auto asks = [&](const Measure& m) {
+    return m.stopped_by.empty() ? names(m.of) : m.stopped_by == kStoppedCollapse;
+  };
+  return std::ranges::any_of(scene_.expectations, names) ||
+         std::ranges::any_of(scene_.measures, asks);
+}
+
+bool Run::load_step() {
+  if (scene_.time.automatic_load_steps) return automatic_load_step();
+  const double time = next_load_time();
   const auto pause = [&] { return asked_to_stop() || checkpoint_due(); };
   LoadStep found = simulation_->balance(time, pause);
   while (!found.complete && !asked_to_stop()) {
@@ -265,13 +378,10 @@ bool Run::load_step() {
 
 void Run::loop(double until) {
   if (!settings_.resume && state().step == 0) record(true, true);
-  const std::int64_t count = scene_.time.load_steps;
   const auto more = [&] {
     if (!scene_.time.statics) return !reached(until);
     // A load step is taken whole: only if it does not lead beyond the time.
-    const double next =
-        scene_.time.end * static_cast<double>(state().step + 1) / static_cast<double>(count);
-    return state().step < count && next <= until * (1 + 1e-12);
+    return !reached(scene_.time.end) && next_load_time() <= until * (1 + 1e-12);
   };
   while (!asked_to_stop() && stopped_by_.empty() && more() && step()) {
     if (!is_look()) continue;
@@ -456,11 +566,17 @@ void Run::save(const std::string& file) {
   write_state(file, scene_, scene_hash_, *simulation_, progress_, true);
 }
 
+double Run::value_of(const Reduction& reduction) const {
+  if (reduction.quantity != kCollapseFactor) return reduce(reduction, settings_.folder);
+  return collapse_ ? collapse_->factor() : std::nan("");
+}
+
 void Run::judge() {
   if (settings_.folder.empty()) return;
   for (const Expectation& expectation : scene_.expectations) {
     try {
-      outcomes_.push_back(evaluate(expectation, settings_.folder));
+      const double value = value_of(expectation);
+      outcomes_.push_back({value, std::abs(value - expectation.value) <= expectation.tolerance});
     } catch (const std::runtime_error&) {  // no row in its window
       outcomes_.push_back({std::nan(""), false});
     }
@@ -471,7 +587,7 @@ void Run::judge() {
       continue;
     }
     try {
-      measures_.push_back(reduce(measure.of, settings_.folder));
+      measures_.push_back(value_of(measure.of));
     } catch (const std::runtime_error&) {  // no row in its window
       measures_.push_back(std::nan(""));
     }

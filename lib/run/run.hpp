@@ -20,6 +20,7 @@
 #include "lib/output/history.hpp"
 #include "lib/run/applied_force.hpp"
 #include "lib/run/checkpoint.hpp"
+#include "lib/run/collapse.hpp"
 #include "lib/run/start.hpp"
 #include "lib/run/stop_watch.hpp"
 #include "lib/scene/scene.hpp"
@@ -125,6 +126,12 @@ class Run {
   /// implicit steps (QuietMotion); nothing if the scene does not go with it.
   [[nodiscard]] std::optional<double> quiet_share() const;
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
+  /// Of a static run whose loads could not be carried any more; else null.
+  [[nodiscard]] const Collapse* collapse() const { return collapse_ ? &*collapse_ : nullptr; }
+  /// Of scenes with rigid bodies in the limit; else without passes.
+  [[nodiscard]] const RigidLimit& rigid_limit() const { return progress_.rigid; }
+  /// Whether the scene asks for the load factor of its collapse, which is then a result.
+  [[nodiscard]] bool seeks_collapse() const;
   /// One for each expectation of the scene, after a run to its end.
   [[nodiscard]] const std::vector<Outcome>& outcomes() const { return outcomes_; }
   /// One for each measure of the scene, after a run to its end; not finite where its window holds
@@ -140,6 +147,7 @@ class Run {
   HistoryWriter::Parts start();
   HistoryWriter::Parts resume();
   void prepare();
+  void stiffen();
   void refuse_other_beginning() const;
   [[nodiscard]] bool reached(double time) const;
   void require_forces() const;
@@ -149,6 +157,11 @@ class Run {
   [[nodiscard]] bool is_look() const;
   [[nodiscard]] double horizon() const;
   bool load_step();
+  bool automatic_load_step();
+  void end_by_collapse(double upper, std::vector<double> motion);
+  void write_mechanism();
+  [[nodiscard]] double next_load_time() const;
+  [[nodiscard]] double value_of(const Reduction& reduction) const;
   void record(bool row, bool frame);
   void write_row();
   void write_frame();
@@ -190,6 +203,7 @@ class Run {
   std::optional<QuietMotion> quiet_;  // watched by velocity Verlet, where "auto" would do
   StopWatch stop_watch_{scene_.model, scene_.stops};
   std::string stopped_by_;
+  std::optional<Collapse> collapse_;
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_, last_checkpoint_;
   double processor_start_ = 0;

@@ -70,6 +70,35 @@ void add_load_steps(Json& json, const Run& run) {
   }
 }
 
+Json collapse(const Run& run) {
+  const Collapse& c = *run.collapse();
+  const Model& model = run.scene().model;
+  Json bodies = Json::array();
+  for (const MovingBody& b : moving_bodies(model, run.state(), c.motion)) {
+    bodies.push_back({{"body", model.name_of(b.body)}, {"x", b.x}, {"y", b.y}, {"angle", b.angle}});
+  }
+  return {{"factor", c.factor()},
+          {"lower", c.factor() - c.error()},
+          {"upper", c.factor() + c.error()},
+          {"mechanism", c.frame < 0 ? Json() : Json(c.frame)},
+          {"scale", c.scale},
+          {"bodies", std::move(bodies)}};
+}
+
+Json rigid_limit(const Run& run) {
+  const RigidLimit& limit = run.rigid_limit();
+  Json passes = Json::array();
+  for (const RigidPass& pass : limit.passes) {
+    Json entry{{"normal_stiffness", pass.stiffness}, {"collapse", nullptr}};
+    if (pass.collapsed) {
+      entry["collapse"] = {{"factor", pass.factor()}, {"lower", pass.lower}, {"upper", pass.upper}};
+    }
+    passes.push_back(std::move(entry));
+  }
+  return {{"change", limit.collapses() ? Json() : Json(limit.change)},
+          {"passes", std::move(passes)}};
+}
+
 Json settings(const Scene& scene) {
   Json json = Json::object();
   for (const Setting& s : scene.settings) json[s.path] = Json::parse(s.value);
@@ -180,6 +209,8 @@ std::string summary_text(const Run& run) {
   add_peaks(json, run);
   json["final_state_hash"] = state_hash(state);
   if (scene.time.statics) add_load_steps(json, run);
+  if (scene.rigid) json["rigid"] = rigid_limit(run);
+  if (run.collapse()) json["collapse"] = collapse(run);
   if (!run.message().empty()) json["message"] = run.message();
   json["warnings"] = run.warnings();
   json["expectations"] = expectations(run);

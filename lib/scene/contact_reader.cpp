@@ -43,6 +43,9 @@ class ContactReader {
       law.friction = friction(*v, true);
     }
     if (const JsonValue* v = object.optional("damping")) damping(*v);
+    if (const JsonValue* v = object.optional("rigid"); v && in_.boolean(*v)) {
+      features_.add(Feature::rigid_limit, v);
+    }
     object.read("penetration_warning", law.penetration_warning, &JsonReader::positive, "");
     object.optional("pairs");  // read by read_rules()
     const JsonValue* surface_value = object.optional("surface");

@@ -49,13 +49,28 @@ std::vector<MotionHistory::SpinPoint> read_spins(const JsonReader& in, const Jso
   return points;
 }
 
-LoadHistory read_load_history(const JsonReader& in, const JsonValue& value) {
+namespace {
+
+LoadHistory read_factors(const JsonReader& in, const JsonValue& value, const char* row,
+                         const char* without) {
   LoadHistory history;
-  rows(in, value, 2, "[t, factor], t in s", [&](const std::vector<double>& p) {
+  rows(in, value, 2, row, [&](const std::vector<double>& p) {
     history.points.push_back({p[0], p[1]});
   });
-  if (history.points.empty()) in.fail(value, "must hold at least one row; leave it out for 1");
+  if (history.points.empty()) {
+    in.fail(value, std::string("must hold at least one row; leave it out for ") + without);
+  }
   return history;
+}
+
+}  // namespace
+
+LoadHistory read_load_history(const JsonReader& in, const JsonValue& value) {
+  return read_factors(in, value, "[t, factor], t in s", "1");
+}
+
+LoadHistory read_tilt_history(const JsonReader& in, const JsonValue& value) {
+  return read_factors(in, value, "[t, angle] in s and rad", "0");
 }
 
 namespace {

@@ -23,5 +23,7 @@ std::vector<MotionHistory::VelocityPoint> read_velocities(const JsonReader& in,
                                                           const JsonValue& value);
 std::vector<MotionHistory::SpinPoint> read_spins(const JsonReader& in, const JsonValue& value);
 LoadHistory read_load_history(const JsonReader& in, const JsonValue& value);
+/// The same of an angle in rad.
+LoadHistory read_tilt_history(const JsonReader& in, const JsonValue& value);
 
 }  // namespace apothem

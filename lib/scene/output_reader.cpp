@@ -142,6 +142,7 @@ std::vector<HistoryColumn> OutputReader::columns() const {
   for (const Column& column : kEnergyColumns) columns.push_back({column.name, column.unit});
   for (const Column& column : kMomentumColumns) columns.push_back({column.name, column.unit});
   columns.push_back({"time", "s"});
+  columns.insert(columns.end(), besides_.begin(), besides_.end());
   return columns;
 }
 

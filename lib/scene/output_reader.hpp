@@ -26,6 +26,8 @@ class OutputReader {
   /// Reads "output". Throws SceneError.
   void read(const JsonValue& value);
 
+  /// Expectations and measures may name this quantity besides the columns of the histories.
+  void know(HistoryColumn quantity) { besides_.push_back(std::move(quantity)); }
   /// Reads "expect". Called last, because expectations name the columns of the histories. `end` is
   /// the end of the run in s. Throws SceneError.
   [[nodiscard]] std::vector<Expectation> expectations(const JsonValue& value, double end) const;
@@ -51,6 +53,7 @@ class OutputReader {
   const std::vector<std::string>& bodies_;
   OutputSettings& output_;
   UsedFeatures& features_;
+  std::vector<HistoryColumn> besides_;
 };
 
 /// Throws SceneError for a name that cannot head the columns of a CSV file.

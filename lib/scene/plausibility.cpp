@@ -97,7 +97,9 @@ class Inspection {
     const bool slides = std::ranges::any_of(
         scene_.model.bodies, [](const RigidBody& body) { return body.motion == Motion::free; });
     const double mu = law.friction.coefficient;
-    if (!slides || mu <= kRocks || mu > kCoefficient.most || law.damping.normal >= kCalms) return;
+    if (scene_.time.statics || !slides || mu <= kRocks || mu > kCoefficient.most ||
+        law.damping.normal >= kCalms)
+      return;
     say(friction,
         fmt::format("rigid blocks that slide with a coefficient above {:g} may begin to rock "
                     "and lift off; a contact damping of the ratio {:g} prevents it",

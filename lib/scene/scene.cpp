@@ -92,16 +92,41 @@ class SceneReader {
   }
 
   void gravity(const JsonValue& value) {
+    // A list of vectors or objects is a sum; a list of two numbers is a vector.
+    const bool list = value.type() == JsonValue::Type::array && !in_.array(value).empty() &&
+                      in_.array(value)[0].type() != JsonValue::Type::number;
+    if (!list) {
+      const GravityPart part = gravity_part(value);
+      if (part.tilt.points.empty()) {
+        model_.gravity = part.value;
+        model_.gravity_history = part.history;
+        return;
+      }
+      model_.gravity_parts = {part};
+    } else {
+      for (const JsonValue& part : in_.array(value)) {
+        model_.gravity_parts.push_back(gravity_part(part));
+      }
+    }
+    model_.gravity = model_.gravity_at(0);
+  }
+
+  GravityPart gravity_part(const JsonValue& value) {
+    GravityPart part;
     if (value.type() != JsonValue::Type::object) {
-      model_.gravity = in_.vec2(value, "m/s^2");
-      return;
+      part.value = in_.vec2(value, "m/s^2");
+      return part;
     }
     JsonObject object(in_, value);
-    model_.gravity = in_.vec2(object.required("value", "[x, y] in m/s^2"), "m/s^2");
+    part.value = in_.vec2(object.required("value", "[x, y] in m/s^2"), "m/s^2");
     if (const JsonValue* v = object.optional("history")) {
-      model_.gravity_history = read_load_history(in_, *v);
+      part.history = read_load_history(in_, *v);
+    }
+    if (const JsonValue* v = object.optional("direction_history")) {
+      part.tilt = read_tilt_history(in_, *v);
     }
     object.finish();
+    return part;
   }
 
   // Bodies of the batches after the first one of a fill.
@@ -158,6 +183,9 @@ class SceneReader {
     scene_.automatic_scheme = !scene_.time.statics &&
                               goes_with(features_, Feature::automatic_scheme) &&
                               goes_with(features_, Feature::implicit_steps);
+    scene_.rigid = features_.uses(Feature::rigid_limit);
+    if (scene_.rigid) scene_.time.automatic_load_steps = true;
+    if (scene_.time.automatic_load_steps) reader.know({kCollapseFactor, "1"});
     if (expect) scene_.expectations = reader.expectations(*expect, scene_.time.end);
     if (measure) scene_.measures = reader.measures(*measure, scene_.time.end, stop_names());
   }
@@ -166,6 +194,7 @@ class SceneReader {
   [[nodiscard]] std::vector<std::string> stop_names() const {
     std::vector<std::string> names = names_of(scene_.stops);
     if (model_.world.outside == World::Outside::stop) names.emplace_back(kStoppedOutside);
+    if (scene_.time.automatic_load_steps) names.emplace_back(kStoppedCollapse);
     return names;
   }
 

@@ -20,6 +20,7 @@ struct Scene {
   TimeSettings time;
   bool automatic_scheme = false;  ///< whether "scheme": "auto" goes with all that the scene uses
   OutputSettings output;
+  bool rigid = false;  ///< results are those of rigid bodies (run/rigid_limit.hpp)
   std::vector<Expectation> expectations;
   std::vector<StopRule> stops;
   std::vector<Measure> measures;

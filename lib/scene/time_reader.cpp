@@ -32,6 +32,12 @@ class TimeReader {
  private:
   void load_steps(const JsonValue& value) {
     features_.add(Feature::load_steps, &value);
+    if (value.type() == JsonValue::Type::string) {
+      in_.choice(value, {"auto"});
+      time_.automatic_load_steps = true;
+      return;
+    }
+    features_.add(Feature::counted_load_steps, &value);
     time_.load_steps = in_.count(value);
     if (time_.load_steps < 1) in_.fail(value, "must be at least 1");
   }

@@ -125,3 +125,30 @@ TEST_CASE("static runs follow gravity from load step to load step", "[gravity][e
   CHECK(sag[2] == Approx(sag[1] * .75).epsilon(1e-3));
   CHECK(sag[3] == Approx(sag[0]).epsilon(1e-6));
 }
+
+TEST_CASE("a body falls in gravity that turns, and the ledgers close", "[gravity]") {
+  Model model = make_model(.5);
+  GravityPart part{.value = {0, -kG}};
+  part.tilt.points = {{0, 0}, {1, .5}};
+  GravityPart shake{.value = {3, 0}};
+  shake.history.points = {{0, 0}, {.5, 1}, {1, 0}};
+  model.gravity_parts = {part, shake};
+  model.gravity = model.gravity_at(0);
+  add(model, "block", flat_block());
+  add(model, "slope", samples::block(-10, -21, 20, -20), Motion::fixed);
+  TimeSettings time;
+  time.end = 1;
+  time.fixed_step = 1e-4;
+  Simulation simulation(model, time, 1, 1);
+  run_until(simulation, 1);
+  // The integrals of -g sin(t/2) with the pulse of area 1.5, and of -g cos(t/2).
+  const State& s = simulation.state();
+  CHECK(s.pose_rate(0)[0] == Approx(-2 * kG * (1 - std::cos(.5)) + 1.5).epsilon(1e-7));
+  CHECK(s.pose_rate(0)[1] == Approx(-2 * kG * std::sin(.5)).epsilon(1e-7));
+  const Energies e = simulation.energies();
+  CHECK(std::abs(e.external_work) > .01 * e.kinetic);
+  CHECK(std::abs(e.total_error) < 1e-7 * e.kinetic);
+  const Momenta p = simulation.momenta();
+  CHECK(std::abs(p.x_error) + std::abs(p.y_error) < 1e-10 * std::abs(p.y));
+  CHECK(std::abs(p.angular_error) < 1e-9 * std::abs(p.angular));
+}

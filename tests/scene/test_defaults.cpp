@@ -93,6 +93,7 @@ std::string digest(const Scene& s) {
   const TimeSettings& t = s.time;
   add(t.statics, t.load_steps, t.tolerance, t.fixed_step.value_or(0), t.settled, t.accuracy,
       t.onsets, static_cast<int>(t.scheme));
+  add(s.rigid, t.automatic_load_steps);
   add(s.output.frames, s.output.checkpoint_interval.value_or(0));
   return text;
 }
@@ -141,6 +142,8 @@ std::vector<Default> settings_defaults() {
   const Json statics = with(rectangle(), "/time/mode", "static");
   return {
       {"/properties/time/properties/mode", rectangle(), "/time/mode", "static"},
+      {"/properties/contact/properties/rigid", with(rigid(), "/time/mode", "static"),
+       "/contact/rigid", true},
       {"/properties/time/properties/load_steps", statics, "/time/load_steps", 5},
       {"/properties/time/properties/tolerance", statics, "/time/tolerance", 1e-5},
       {"/properties/time/properties/scheme", rigid(), "/time/scheme", "auto"},

@@ -587,6 +587,34 @@ TEST_CASE("a ratio of damping may be 0", "[scene]") {
                     Catch::Contains("given already"));
 }
 
+TEST_CASE("gravity may turn and be a sum of parts", "[scene]") {
+  const Folder folder;
+  const auto model_with = [&](const std::string& gravity) {
+    return read_scene(
+               folder.write("gravity.json", replaced(kMeshedScene, "\"time\"",
+                                                     "\"gravity\": " + gravity + ", \"time\"")))
+        .model;
+  };
+  // A table that tilts counter-clockwise: things slide to the left.
+  const Model tilts = model_with(
+      R"({ "value": [0, -10], "history": [[0, 0.5], [2, 1]], "direction_history": [[0, 0], [2, 1]] })");
+  CHECK(tilts.has_gravity());
+  CHECK((tilts.gravity - Vec2(0, -5)).norm() < 1e-15);
+  CHECK((tilts.gravity_at(1) - 7.5 * Vec2(-std::sin(.5), -std::cos(.5))).norm() < 1e-14);
+  CHECK((tilts.gravity_at(9) - 10 * Vec2(-std::sin(1.), -std::cos(1.))).norm() < 1e-14);
+  CHECK(tilts.strongest_gravity() == 10);
+  const Model sum = model_with(R"([[0, -10], { "value": [4, 0], "history": [[0, 0], [1, 2]] }])");
+  CHECK(sum.gravity == Vec2(0, -10));
+  CHECK((sum.gravity_at(.25) - Vec2(2, -10)).norm() < 1e-15);
+  CHECK(sum.strongest_gravity() == 18);
+  // One part whose direction is constant is what it has been.
+  CHECK(model_with(R"([{ "value": [0, -10] }])").gravity_at(3) == Vec2(0, -10));
+  CHECK(model_with(R"({ "value": [0, -10] })").gravity_parts.empty());
+  CHECK_THROWS_WITH(model_with(R"([[0, -10], [1]])"), Catch::Contains("/gravity/1"));
+  CHECK_THROWS_WITH(model_with(R"({ "value": [0, -1], "direction_history": [] })"),
+                    Catch::Contains("leave it out for 0"));
+}
+
 TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
   const Folder folder;
   const std::string good =
@@ -601,6 +629,7 @@ TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
   };
   const Case cases[]{
       {"\"load_steps\": 4", "\"load_steps\": 0", "/time/load_steps"},
+      {"\"load_steps\": 4", "\"load_steps\": \"many\"", "/time/load_steps"},
       {"\"load_steps\": 4", "\"tolerance\": 0.5", "between 1e-12 and 1e-2"},
       {"\"load_steps\": 4", "\"step\": 1e-3", "/time/step: has no meaning in a static run"},
       {"\"load_steps\": 4", "\"start\": \"settled\"", "/time/start: has no meaning"},

@@ -132,7 +132,10 @@ void PatchTangential::add_to(std::span<ContactRecord> patches,
                              const PairInTouch& pair) const {
   const std::span<const Spring> springs = springs_of(pair);
   for (size_t i = 0; i < springs.size(); ++i) {
+    // Pairs that touch by round-off alone may have no patch in another arithmetic.
+    if (per_edge_ && i >= segments.size()) break;
     const int patch = per_edge_ ? segments[i].patch : springs[i].key.part;
+    if (static_cast<size_t>(patch) >= patches.size()) continue;
     patches[static_cast<size_t>(patch)].tangential += springs[i].force * springs[i].tangent;
   }
 }
