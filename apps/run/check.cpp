@@ -58,8 +58,11 @@ void say_step(const Scene& scene, const Simulation& simulation) {
   say("run", fmt::format("{:g} s in {}{:.0f} steps", scene.time.end, phases ? "at most " : "",
                          std::ceil(scene.time.end / choice.step)));
   if (scene.time.statics) {
-    say("static",
-        fmt::format("{} load steps, tolerance {:g}", scene.time.load_steps, scene.time.tolerance));
+    const std::string count = scene.time.automatic_load_steps
+                                  ? "load steps of automatic size, as far as the loads can grow"
+                                  : fmt::format("{} load steps", scene.time.load_steps);
+    say("static", fmt::format("{}, tolerance {:g}{}", count, scene.time.tolerance,
+                              scene.rigid ? "; in the limit of rigid bodies" : ""));
     return;
   }
   const bool by_elements = choice.limit.reason.starts_with("elements");
@@ -142,8 +145,9 @@ int check_command(const CheckOptions& options) {
   say("name", model.name);
   say_bodies(model);
   say_imports(scene);
-  if (model.gravity != Vec2::Zero()) {
+  if (model.has_gravity()) {
     std::string factors;
+    if (!model.gravity_parts.empty()) factors = " at t = 0, and later as the terms say";
     for (const LoadHistory::Point& p : model.gravity_history.points) {
       factors +=
           fmt::format("{}{:g} at {:g} s", factors.empty() ? ", times " : ", ", p.factor, p.time);

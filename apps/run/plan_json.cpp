@@ -206,7 +206,9 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
     json["gravity_history"].push_back({p.time, p.factor});
   }
   if (scene.time.statics) {
-    json["load_steps"] = scene.time.load_steps;
+    json["load_steps"] =
+        scene.time.automatic_load_steps ? Json("auto") : Json(scene.time.load_steps);
+    json["rigid"] = scene.rigid;
     json["tolerance"] = scene.time.tolerance;
   } else {
     json["time_step"] = time_step(scene, simulation);

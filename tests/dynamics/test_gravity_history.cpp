@@ -128,9 +128,11 @@ TEST_CASE("static runs follow gravity from load step to load step", "[gravity][e
 
 TEST_CASE("a body falls in gravity that turns, and the ledgers close", "[gravity]") {
   Model model = make_model(.5);
-  GravityPart part{.value = {0, -kG}};
+  GravityPart part;
+  part.value = {0, -kG};
   part.tilt.points = {{0, 0}, {1, .5}};
-  GravityPart shake{.value = {3, 0}};
+  GravityPart shake;
+  shake.value = {3, 0};
   shake.history.points = {{0, 0}, {.5, 1}, {1, 0}};
   model.gravity_parts = {part, shake};
   model.gravity = model.gravity_at(0);

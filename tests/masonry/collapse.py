@@ -25,6 +25,15 @@ import masonry  # noqa: E402
 
 LATERAL = (masonry.GRAVITY, 0)
 DEAD = (0, -masonry.GRAVITY)
+TABLE = ["| case | ours | limit analysis | difference |", "| --- | --- | --- | --- |"]
+
+
+def add_row(case, ours, exact, error, kind=""):
+    TABLE.append(f"| {case} | {ours} | {exact:.6f}{kind} | {100 * error:.3f} % |")
+
+
+def with_bounds(collapse):
+    return f"{collapse['factor']:.6f} ({collapse['lower']:.6f} to {collapse['upper']:.6f})"
 
 
 def run(program, scene):
@@ -77,6 +86,8 @@ def check_arch(program, n, thickness, degrees):
           f"({collapse['lower']:.6f} to {collapse['upper']:.6f}), limit analysis {exact:.6f}, {100 * error:+.3f} %; "
           f"hinges at joints {[i for i, _ in got]}, limit analysis {[i for i, _ in wanted]}; "
           f"{found['processor_time']:.1f} s", flush=True)
+    add_row(f"arch of {degrees:g} degrees, {n} voussoirs, joints {thickness:g} of the mean radius: lateral acceleration over g",
+            with_bounds(collapse), exact, error)
     assert abs(error) < 0.005
     assert got == wanted
     assert len(got) == 4
@@ -92,6 +103,8 @@ def check_wall(program, rows, blocks, friction, width=.4, height=.2, closed_form
           f"{collapse['factor']:.6f} rad ({collapse['lower']:.6f} to {collapse['upper']:.6f}), limit analysis {exact:.6f}"
           f"{'' if closed_form is None else f', closed form {closed_form:.6f}'}, {100 * error:+.3f} %; "
           f"{found['processor_time']:.1f} s", flush=True)
+    add_row(f"wall of {rows} rows of {blocks} blocks of {width:g} m x {height:g} m, friction {friction:g}, on a tilting table, rad",
+            with_bounds(collapse), exact, error, ", an upper bound" if closed_form is None else ", closed form")
     if closed_form is not None:
         assert abs(exact / closed_form - 1) < 1e-6
     assert abs(error) < 0.01
@@ -125,6 +138,8 @@ def check_thickness(program, n):
     print(f"least t/R of a semicircle of {n}: {value:.6f} +- {error:.6f} "
           f"(k_n 1e9 to 1e12: {', '.join(f'{t:.5f}' for t in each)}), limit analysis {exact:.6f}, "
           f"{100 * (value / exact - 1):+.3f} %; with curved faces {curved:.6f}", flush=True)
+    add_row(f"semicircle of {n} voussoirs: least length of joints over the mean radius", f"{value:.6f} ± {error:.6f}", exact,
+            value / exact - 1)
     assert abs(value / exact - 1) < 0.005
 
 
@@ -145,6 +160,7 @@ def main():
     check_arch(program, 27, .2, 180)
     for n in (8, 16, 32):
         check_thickness(program, n)
+    print("\n".join(TABLE))
 
 
 if __name__ == "__main__":
