@@ -1,4 +1,4 @@
-"""Collapse of dry masonry against limit analysis: usage: collapse.py PROGRAM [all].
+"""Collapse of dry masonry against limit analysis: usage: collapse.py [all] PROGRAM.
 
 The program's load factors, in the limit of rigid bodies, are compared with the linear program of limit_analysis.py for the
 same polygons, and its mechanisms with the hinges of that program. With `all`, all rows of the table in
@@ -144,13 +144,13 @@ def check_thickness(program, n):
 
 
 def main():
-    program = sys.argv[1]
+    program = sys.argv[-1]
     check_masses()
     # A column that topples as a whole; a wall that slides as a whole.
     check_wall(program, 1, 1, .8, .4, 1, closed_form=math.atan(.4))
     check_wall(program, 3, 2, .3, closed_form=math.atan(.3))
     check_arch(program, 7, .15, 157.5)
-    if sys.argv[2:] != ["all"]:
+    if sys.argv[1:-1] != ["all"]:
         return
     check_wall(program, 2, 1, .8, .4, .5, closed_form=math.atan(.4))
     check_wall(program, 6, 5, .6)
