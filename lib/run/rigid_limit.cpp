@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lib/dynamics/simulation.hpp"
+#include "lib/execution/elementary.hpp"
 #include "lib/run/collapse.hpp"
 #include "lib/run/load_path.hpp"
 
@@ -13,15 +14,16 @@ namespace apothem {
 namespace {
 
 constexpr double kStiffer = 10;
-constexpr size_t kFewest = 4;                     // passes
-constexpr double kRounded = 5e-7;                 // of the weight
-constexpr double kFlattest = 0.2, kSteepest = 1;  // exponents that are believed
+constexpr size_t kFewest = 4;                                 // passes
+constexpr double kRounded = 5e-7;                             // of the weight
+constexpr double kLeastRatio = 1.585, kMostRatio = kStiffer;  // of exponents .2 and 1: believed
+constexpr double kSoftest = 1e-3;  // of the stiffest pass: kFewest of them
 
 using Three = std::span<const double, 3>;
 
 // The weights of the values at x = k^(-1/3) in the parabola through them at x = 0.
 Estimate by_thirds(Three f, double noise) {
-  const double s = std::cbrt(1 / kStiffer);
+  const double s = cube_root(1 / kStiffer);
   const std::array<double, 3> x{1, s, s * s};
   Estimate result;
   for (size_t i = 0; i < 3; ++i) {
@@ -40,8 +42,7 @@ Estimate by_thirds(Three f, double noise) {
 Estimate by_ratio(Three f, double noise) {
   const double before = f[1] - f[0], last = f[2] - f[1];
   const double ratio = last != 0 ? before / last : HUGE_VAL;
-  const double r = std::clamp(ratio > 0 ? ratio : HUGE_VAL, std::pow(kStiffer, kFlattest),
-                              std::pow(kStiffer, kSteepest));
+  const double r = std::clamp(ratio > 0 ? ratio : HUGE_VAL, kLeastRatio, kMostRatio);
   return {f[2] + last / (r - 1), noise * (1 + 4 / (r - 1))};
 }
 
@@ -168,7 +169,7 @@ bool stands_still(const RigidLimit& limit) {
 RigidLimit find_rigid_limit(const Model& model, const TimeSettings& time, int threads,
                             const std::function<bool()>& stop) {
   const double most = stiffest(model), own = model.contact.normal_stiffness;
-  const double first = std::min(own, most / std::pow(kStiffer, kFewest - 1));
+  const double first = std::min(own, kSoftest * most);
   RigidLimit limit;
   std::optional<State> before;
   for (double k = first; k <= most * (1 + 1e-9); k *= kStiffer) {
