@@ -11,6 +11,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/forecast.hpp
   dynamics/ledger.hpp
   dynamics/population.hpp
+  dynamics/quiet_motion.hpp
   dynamics/results.hpp
   dynamics/simulation.hpp
   dynamics/step_control.hpp
@@ -97,6 +98,9 @@ set(APOTHEM_PUBLIC_HEADERS
   output/run_folder.hpp
   run/applied_force.hpp
   run/checkpoint.hpp
+  run/collapse.hpp
+  run/load_path.hpp
+  run/rigid_limit.hpp
   run/run.hpp
   run/start.hpp
   run/stop_watch.hpp

@@ -24,7 +24,7 @@ inline bool long_run() { return std::getenv("APOTHEM_LONG") != nullptr; }
 
 /// The number of random cases that a run takes out of `cases`.
 inline int scaled(int cases) {
-  const int divisor = kSanitized ? 50 : long_run() ? 1 : 8;
+  const int divisor = kSanitized ? 50 : long_run() ? 1 : 4;
   return std::max(1, cases / divisor);
 }
 

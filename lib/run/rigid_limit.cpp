@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "lib/dynamics/simulation.hpp"
-#include "lib/execution/elementary.hpp"
 #include "lib/run/collapse.hpp"
 #include "lib/run/load_path.hpp"
 
@@ -14,6 +13,7 @@ namespace apothem {
 namespace {
 
 constexpr double kStiffer = 10;
+constexpr double kShorter = 0.46415888336127786;              // one over its cube root
 constexpr size_t kFewest = 4;                                 // passes
 constexpr double kRounded = 5e-7;                             // of the weight
 constexpr double kLeastRatio = 1.585, kMostRatio = kStiffer;  // of exponents .2 and 1: believed
@@ -23,7 +23,7 @@ using Three = std::span<const double, 3>;
 
 // The weights of the values at x = k^(-1/3) in the parabola through them at x = 0.
 Estimate by_thirds(Three f, double noise) {
-  const double s = cube_root(1 / kStiffer);
+  const double s = kShorter;
   const std::array<double, 3> x{1, s, s * s};
   Estimate result;
   for (size_t i = 0; i < 3; ++i) {

@@ -121,7 +121,7 @@ TEST_CASE("tied events: no map of the ring changes a bit of roof and faces", "[s
 TEST_CASE("tied events around holes: no map of the rings changes a bit of roof and faces",
           "[skeleton]") {
   test::SeededRandom random(436);
-  for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(300)); ++i) {
+  for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(150)); ++i) {
     INFO("polygon " << i);
     require_same_roof(test::random_tied_with_holes(random, i));
   }
@@ -150,7 +150,7 @@ TEST_CASE("tied events: maps of pairs change forces by round-off only", "[skelet
   test::SeededRandom random(434);
   double worst = 0;
   std::map<std::string, int> changed;  // pairs by map
-  for (int i = 0; i < (test::long_run() ? 1000 : test::scaled(200)); ++i) {
+  for (int i = 0; i < (test::long_run() ? 1000 : test::scaled(100)); ++i) {
     const Polygon a = test::random_tied(random, i), other = test::random_tied(random, i / 6);
     const double reach = .3 * (bounding_box(a).extent() + bounding_box(other).extent());
     const Vec2 shift(std::round(random.uniform(-reach, reach)),

@@ -105,7 +105,7 @@ TEST_CASE("around holes: the roof is that of the motorcycle graph", "[skeleton][
 
 TEST_CASE("around holes: wavefront, CGAL and exact front find the same roof", "[skeleton][holes]") {
   test::SeededRandom random(62);
-  for (int i = 0; i < test::scaled(300); ++i) {
+  for (int i = 0; i < test::scaled(150); ++i) {
     const Polygon polygon = i % 3 == 0
                                 ? test::annulus(random.integer(3, 12), random.uniform(.2, .9), 1)
                                 : test::random_drilled(random, random.integer(1, 12));
