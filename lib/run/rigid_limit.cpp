@@ -172,15 +172,17 @@ RigidLimit find_rigid_limit(const Model& model, const TimeSettings& time, int th
   const double first = std::min(own, kSoftest * most);
   RigidLimit limit;
   std::optional<State> before;
-  for (double k = first; k <= most * (1 + 1e-9); k *= kStiffer) {
-    RigidPass pass{.stiffness = k};
-    const Model stiff = stiffened(model, k / own);
+  double stiffness = first;
+  while (stiffness <= most * (1 + 1e-9)) {
+    RigidPass pass{.stiffness = stiffness};
+    const Model stiff = stiffened(model, stiffness / own);
     std::optional<State> after = walk(stiff, time, threads, stop, pass);
     if (!after) break;
     limit.passes.push_back(pass);
     if (before) limit.change = change_of_places(model, *before, *after);
     before = std::move(after);
     if (stands_still(limit)) break;
+    stiffness *= kStiffer;
   }
   if (limit.passes.empty()) {
     throw Unrunnable(
