@@ -65,6 +65,7 @@ std::vector<TouchingPair> touching_pairs(const Model& model, const State& state)
     gap[b] = kTouching * inradius_of(model, static_cast<BodyIndex>(b));
   }
   std::vector<Box> boxes;
+  boxes.reserve(edges.size());
   for (const OutlineEdge& e : edges) boxes.push_back(box_of(e.a, e.b).grown(gap[e.body]));
   std::vector<BoxPair> near;
   BoxGrid().find_pairs(boxes, near);
@@ -81,6 +82,7 @@ std::vector<TouchingPair> touching_pairs(const Model& model, const State& state)
     found.emplace(std::min(one.body, other.body), std::max(one.body, other.body));
   }
   std::vector<TouchingPair> pairs;
+  pairs.reserve(found.size());
   for (const auto& [a, b] : found) pairs.push_back({a, b});
   return pairs;
 }

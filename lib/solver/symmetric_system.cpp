@@ -30,6 +30,7 @@ SymmetricSystem::SymmetricSystem(const Tangent& tangent, const ModalSystem& syst
     mass_[i] = system.mass[coordinate_[static_cast<size_t>(i)]];
   }
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<size_t>(n) + tangent.entries().size());
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 0.);  // so that every pivot has a place
   for (const Tangent::Entry& e : tangent.entries()) {
     const int row = place[static_cast<size_t>(e.row)],
