@@ -38,7 +38,7 @@ struct Linearised {
   ModalSystem system;
   double unbalanced = 0;  ///< norm of the forces out of balance over that of the loads; 0 if none
   int contacts = 0;       ///< contact patches that press
-  std::vector<TouchingPair> touching;  ///< bodies that touch and do not press on each other
+  std::vector<UnloadedPair> touching;  ///< bodies that touch and do not press on each other
   int overlapping = 0;                 ///< contact patches of those that rounding alone has closed
   bool friction = false;               ///< contacts press, and the scene has friction
 };
