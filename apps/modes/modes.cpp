@@ -84,7 +84,7 @@ void note_ways_to_fall(Analysis& found) {
 void note_contacts(const Model& model, Analysis& found) {
   const Linearised& scene = found.scene;
   if (!scene.touching.empty()) {
-    const UnloadedPair& first = scene.touching.front();
+    const TouchingBodies& first = scene.touching.front();
     const std::string closed =
         scene.overlapping > 0
             ? fmt::format(", but {} as closed, because rounding makes the outlines overlap",

@@ -54,7 +54,7 @@ void look_at_contacts(const Simulation& simulation, Linearised& scene) {
   };
   scene.friction = scene.contacts > 0 && (model.contact.friction.coefficient > 0 ||
                                           std::ranges::any_of(model.contact.rules, rough));
-  for (const UnloadedPair& pair : unloaded_pairs(model, simulation.state())) {
+  for (const TouchingBodies& pair : touching_bodies(model, simulation.state())) {
     if (!pressed.contains({pair.a, pair.b})) scene.touching.push_back(pair);
   }
 }

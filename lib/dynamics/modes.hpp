@@ -38,9 +38,9 @@ struct Linearised {
   ModalSystem system;
   double unbalanced = 0;  ///< norm of the forces out of balance over that of the loads; 0 if none
   int contacts = 0;       ///< contact patches that press
-  std::vector<UnloadedPair> touching;  ///< bodies that touch and do not press on each other
-  int overlapping = 0;                 ///< contact patches of those that rounding alone has closed
-  bool friction = false;               ///< contacts press, and the scene has friction
+  std::vector<TouchingBodies> touching;  ///< bodies that touch and do not press on each other
+  int overlapping = 0;    ///< contact patches of those that rounding alone has closed
+  bool friction = false;  ///< contacts press, and the scene has friction
 };
 
 /// Empty if a term does not know its tangent: friction per edge, and element potentials. Friction

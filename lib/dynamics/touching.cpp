@@ -57,7 +57,7 @@ std::vector<OutlineEdge> outline_edges(const Model& model, const State& state) {
 
 }  // namespace
 
-std::vector<UnloadedPair> unloaded_pairs(const Model& model, const State& state) {
+std::vector<TouchingBodies> touching_bodies(const Model& model, const State& state) {
   const std::vector<OutlineEdge> edges = outline_edges(model, state);
   const size_t bodies = model.bodies.size() + model.deformables.size();
   std::vector<double> gap(bodies);
@@ -81,7 +81,7 @@ std::vector<UnloadedPair> unloaded_pairs(const Model& model, const State& state)
     if (least > std::min(gap[one.body], gap[other.body])) continue;
     found.emplace(std::min(one.body, other.body), std::max(one.body, other.body));
   }
-  std::vector<UnloadedPair> pairs;
+  std::vector<TouchingBodies> pairs;
   pairs.reserve(found.size());
   for (const auto& [a, b] : found) pairs.push_back({a, b});
   return pairs;

@@ -9,13 +9,13 @@
 namespace apothem {
 
 /// Two bodies, a < b.
-struct UnloadedPair {
+struct TouchingBodies {
   BodyIndex a, b;
 };
 
 /// The pairs of bodies, of which one can move, whose outlines are no farther apart than kTouching
 /// times the smaller inradius, in ascending order. Bodies that overlap are among them.
-std::vector<UnloadedPair> unloaded_pairs(const Model& model, const State& state);
+std::vector<TouchingBodies> touching_bodies(const Model& model, const State& state);
 
 inline constexpr double kTouching = 1e-6;
 
