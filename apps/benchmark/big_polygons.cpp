@@ -8,7 +8,7 @@
 
 #include "apps/benchmark/bench.hpp"
 #include "apps/cases/samples.hpp"
-#include "geometry/exact/pair_methods.hpp"
+#include "geometry/integrals/edge_integral.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 

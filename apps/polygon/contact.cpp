@@ -6,7 +6,6 @@
 #include "apps/polygon/batch.hpp"
 #include "apps/polygon/input.hpp"
 #include "geometry/exact/pair_methods.hpp"
-#include "geometry/integrals/penetration.hpp"
 #include "geometry/regions/boolean.hpp"
 #include "lib/contact/law/law.hpp"
 #include "lib/output/files.hpp"
@@ -45,21 +44,21 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
   const std::vector<std::string> methods =
       options.method == "all" ? std::vector<std::string>(kPairMethods.begin(), kPairMethods.end())
                               : std::vector{options.method};
-  const double deepest = penetration(a, b);
+  const PosedPair posed(a, b);
+  const double deepest = posed.penetration();
   Json list = Json::array();
   for (const std::string& method : methods) {
     const Clock::time_point start = Clock::now();
-    const PairResult result = evaluate_pair(method, a, b, choice);
+    const PairContact pair = posed.contact(method, choice);
     const double seconds = seconds_since(start);
-    const PairIntegral& pair = result.integral;
-    const Vec2 point = world_loading_point(pair, a);
+    const Vec2& point = pair.loading_point;
     list.push_back({{"method", method},
                     {"force", {k * pair.force.x(), k * pair.force.y()}},
                     {"moment_a", k * pair.moment_a},
                     {"moment_b", k * pair.moment_b},
                     {"loading_point", {point.x(), point.y()}},
-                    {"energy", k * result.volume.energy},
-                    {"overlap_area", result.volume.overlap_area},
+                    {"energy", k * pair.energy},
+                    {"overlap_area", pair.overlap_area},
                     {"own_length_a", pair.own_length_a},
                     {"own_length_b", pair.own_length_b},
                     {"weight", k * pair.weight},

@@ -5,7 +5,6 @@
 #include "apps/python/bindings.hpp"
 #include "geometry/exact/overlap.hpp"
 #include "geometry/exact/pair_methods.hpp"
-#include "geometry/integrals/penetration.hpp"
 #include "geometry/meshing/voronoi.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
@@ -163,15 +162,15 @@ py::object contact(const Polygon& a, const Polygon& b, const std::string& method
     throw std::invalid_argument("stiffness must be positive, in Pa");
   }
   const PotentialChoice choice = choice_of(potential, field, reference);
-  const PairResult found = [&] {
+  const auto [p, deepest] = [&] {
     const py::gil_scoped_release release;
-    return evaluate_pair(method, a, b, choice);
+    const PosedPair posed(a, b);
+    return std::pair(posed.contact(method, choice), posed.penetration());
   }();
-  const PairIntegral& p = found.integral;
   const double k = stiffness;
   return result("PairContact", method, pair(k * p.force), k * p.moment_a, k * p.moment_b,
-                pair(world_loading_point(p, a)), k * found.volume.energy, found.volume.overlap_area,
-                p.own_length_a, p.own_length_b, k * p.weight, penetration(a, b), p.largest_phi);
+                pair(p.loading_point), k * p.energy, p.overlap_area, p.own_length_a, p.own_length_b,
+                k * p.weight, deepest, p.largest_phi);
 }
 
 // What a polygon and a potential of it are at points.

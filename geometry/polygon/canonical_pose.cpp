@@ -30,32 +30,6 @@ Rings image(const Polygon& polygon, const AxisMap& map) {
   return rings;
 }
 
-struct Images {
-  Rings first;
-  std::vector<AxisMap> maps;  // that lead to it
-};
-
-Images first_image(const Polygon& polygon) {
-  Images result;
-  for (const bool exchanged : {false, true}) {
-    for (const double x : {1., -1.}) {
-      for (const double y : {1., -1.}) {
-        const AxisMap map{exchanged, x, y};
-        Rings rings = image(polygon, map);
-        const bool none = result.maps.empty();
-        if (!none && rings == result.first) {
-          result.maps.push_back(map);
-        } else if (none ||
-                   std::lexicographical_compare(rings.begin(), rings.end(), result.first.begin(),
-                                                result.first.end(), ring_precedes)) {
-          result = {std::move(rings), {map}};
-        }
-      }
-    }
-  }
-  return result;
-}
-
 // The map that does what the first one does after the second one has been undone.
 AxisMap composed(const AxisMap& first, const AxisMap& second) {
   const Vec2 x = first(second.undo({1, 0})), y = first(second.undo({0, 1}));
@@ -63,11 +37,38 @@ AxisMap composed(const AxisMap& first, const AxisMap& second) {
   return {x.x() == 0, sum.x(), sum.y()};
 }
 
+bool rings_precede(const Rings& p, const Rings& q) {
+  return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), ring_precedes);
+}
+
 }  // namespace
+
+FirstImage first_image(const std::vector<const Polygon*>& polygons) {
+  FirstImage first;
+  for (const bool exchanged : {false, true}) {
+    for (const double x : {1., -1.}) {
+      for (const double y : {1., -1.}) {
+        const AxisMap map{exchanged, x, y};
+        std::vector<Rings> images;
+        images.reserve(polygons.size());
+        for (const Polygon* polygon : polygons) images.push_back(image(*polygon, map));
+        const bool none = first.maps.empty();
+        if (!none && images == first.polygons) {
+          first.maps.push_back(map);
+        } else if (none || std::lexicographical_compare(images.begin(), images.end(),
+                                                        first.polygons.begin(),
+                                                        first.polygons.end(), rings_precede)) {
+          first = {std::move(images), {map}};
+        }
+      }
+    }
+  }
+  return first;
+}
 
 CanonicalPose::CanonicalPose(const Polygon& polygon)
     : polygon_([&] {
-        Images images = first_image(polygon);
+        const FirstImage images = first_image({&polygon});
         map_ = images.maps.front();
         // A half turn, a quarter turn and a mirror, in this order, make all symmetries there are.
         std::array<const AxisMap*, kHalvings> steps{};
@@ -80,7 +81,7 @@ CanonicalPose::CanonicalPose(const Polygon& polygon)
         for (const AxisMap* image : steps) {
           if (image) symmetries_.push_back(composed(*image, map_));
         }
-        return Polygon(polygon_of_rings(images.first));
+        return Polygon(polygon_of_rings(images.polygons.front()));
       }()),
       shift_(map_.undo(polygon_.origin()) - polygon.origin()) {}
 

@@ -24,12 +24,19 @@ struct AxisMap {
   [[nodiscard]] bool mirrors() const { return (x * y < 0) != exchanged; }
 };
 
+/// The image of some polygons under one of these maps that comes first in the order of coordinates,
+/// where each ring begins at its leftmost and lowest vertex and holes are in this order as well.
+struct FirstImage {
+  std::vector<Rings> polygons;
+  std::vector<AxisMap> maps;  ///< all that lead to it: several if the polygons are symmetric
+};
+FirstImage first_image(const std::vector<const Polygon*>& polygons);
+
 class CanonicalPose {
  public:
   explicit CanonicalPose(const Polygon& polygon);
 
-  /// The polygon in this pose: of its eight images, each ring from its leftmost and lowest vertex
-  /// on, the one that comes first in the order of coordinates, as do its holes.
+  /// The polygon in this pose, which is its first image.
   [[nodiscard]] const Polygon& polygon() const { return polygon_; }
 
   /// Points that have been computed in this pose, relative to the origin of the polygon there, in

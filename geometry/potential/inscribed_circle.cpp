@@ -378,27 +378,46 @@ bool before(const Vec2& p, const Vec2& q) {
   return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
 }
 
-}  // namespace
+// The largest radius, and both ends of each segment of centres, which are equal for single ones.
+struct FoundCircle {
+  double radius;
+  std::vector<Vec2> ends;
+};
 
-InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress) {
-  if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
-  const CanonicalPose pose(polygon);
+FoundCircle circle_of_few_edges(const Polygon& convex) {
+  InscribedCircle circle = inscribed_circle(convex);
+  if (circle.centres.size() == 1) circle.centres.push_back(circle.centres.front());
+  return {circle.radius, std::move(circle.centres)};
+}
+
+FoundCircle searched_circle(const Polygon& polygon, const Progress& progress) {
   const double extent = bounding_box(polygon).extent();
   const double unit = std::exp2(std::ilogb(extent) + (std::ldexp(extent, -std::ilogb(extent)) > 1));
   using Start = Search::Start;
-  Search search(pose.polygon(), unit,
+  Search search(polygon, unit,
                 polygon.vertices().size() > kManyEdges ? Start::box : Start::triangles);
   if (!search.run(progress)) {
-    search = Search(pose.polygon(), unit, Start::triangles);
+    search = Search(polygon, unit, Start::triangles);
     search.run(progress);
   }
   if (!(search.radius() > kSmallest)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);
   }
-  const std::vector<Centre> centres = search.centres();
-  std::vector<Vec2> ends;
-  for (const Centre& c : centres) ends.insert(ends.end(), {c.first * unit, c.last * unit});
-  ends = pose.back(std::move(ends));
+  FoundCircle found{search.radius() * unit, {}};
+  for (const Centre& c : search.centres()) {
+    found.ends.insert(found.ends.end(), {c.first * unit, c.last * unit});
+  }
+  return found;
+}
+
+}  // namespace
+
+InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress) {
+  const CanonicalPose pose(polygon);
+  const bool few = polygon.size() <= kFewEdges && polygon.is_convex();
+  FoundCircle found =
+      few ? circle_of_few_edges(pose.polygon()) : searched_circle(pose.polygon(), progress);
+  const std::vector<Vec2> ends = pose.back(std::move(found.ends));
   std::vector<Centre> placed;
   for (size_t i = 0; i < ends.size(); i += 2) {
     placed.push_back({ends[i], ends[i + 1]});
@@ -408,7 +427,7 @@ InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress&
   }
   std::sort(placed.begin(), placed.end(),
             [](const Centre& a, const Centre& b) { return before(a.first, b.first); });
-  InscribedCircle circle{search.radius() * unit, {}};
+  InscribedCircle circle{found.radius, {}};
   for (const Centre& c : placed) {
     circle.centres.push_back(c.first);
     if (c.last != c.first) circle.centres.push_back(c.last);
