@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
@@ -69,11 +70,29 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
   return list;
 }
 
+// For each number of the results.
+constexpr std::array kUnits{std::pair("force", " N/m, on A"),
+                            std::pair("moment_a", " N, about the centroid of A"),
+                            std::pair("moment_b", " N, about the centroid of B"),
+                            std::pair("loading_point", " m"),
+                            std::pair("energy", " J/m"),
+                            std::pair("overlap_area", " m^2"),
+                            std::pair("own_length_a", " m, of the boundary of A inside B"),
+                            std::pair("own_length_b", " m, of the boundary of B inside A"),
+                            std::pair("weight", " N/m, all tractions without their directions"),
+                            std::pair("penetration", " m"),
+                            std::pair("largest_phi", ""),
+                            std::pair("seconds", " s")};
+
 void print_table(const Json& list) {
   for (const Json& r : list) {
     fmt::print("{}\n", r["method"].get<std::string>());
-    for (const auto& [key, value] : r.items()) {
-      if (key != "method") fmt::print("  {:<15} {}\n", key, value.dump());
+    for (const auto& [key, unit] : kUnits) {
+      const Json& value = r.at(key);
+      const std::string text = value.is_array()
+                                   ? fmt::format("({}, {})", value[0].dump(), value[1].dump())
+                                   : value.dump();
+      fmt::print("  {:<15} {}{}\n", key, text, unit);
     }
   }
 }

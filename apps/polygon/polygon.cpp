@@ -157,7 +157,10 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   row("centroid", place(a.polygon, a.moments.centroid) + " m");
   row("polar moment", fmt::format("{} m^4, about the centroid", a.moments.polar));
   row("inradius", fmt::format("{} m", a.circle.radius));
-  row("incircle centres", places(a.polygon, a.circle.centres) + " m");
+  row("incircle centres",
+      places(a.polygon, a.circle.centres) +
+          (a.circle.centres.size() > 1 ? " m, single ones or the two ends of a line of centres"
+                                       : " m"));
   row("roof height", fmt::format("{} m", a.skeleton.roof_height));
   row("reference length", fmt::format("{} m ({})", a.reference, reference_name));
   row("singular area", kind_name(a.singular.kind()));
@@ -174,8 +177,9 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   }
   if (!a.singular.points.empty()) row("  points", places(a.polygon, a.singular.points) + " m");
   row("faces", fmt::format("{}", a.polygon.size()));
-  row("arithmetic", fmt::format("{}, {} attempt{}", arithmetic(a.skeleton), a.skeleton.attempts,
-                                a.skeleton.attempts == 1 ? "" : "s"));
+  row("skeleton",
+      fmt::format("in {}, {} attempt{}", a.skeleton.exact ? "exact arithmetic" : "double precision",
+                  a.skeleton.attempts, a.skeleton.attempts == 1 ? "" : "s"));
 }
 
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "apps/commands.hpp"
 #include "apps/data_folder.hpp"
@@ -21,11 +22,19 @@
 namespace apothem {
 namespace {
 
+// People write "24", "fig24" or "Fig. 24" for "fig-24".
+std::string figure_name(const std::string& text) {
+  static const std::regex form("(?:fig(?:ure)?)?[-_. ]*([0-9].*)", std::regex::icase);
+  std::smatch parts;
+  return std::regex_match(text, parts, form) ? "fig-" + parts[1].str() : text;
+}
+
 std::vector<std::string> chosen(const ReproduceOptions& options,
                                 const std::vector<std::string>& known) {
   if (options.figures == std::vector<std::string>{"all"}) return known;
   std::vector<std::string> names;
-  for (const std::string& name : options.figures) {
+  for (const std::string& text : options.figures) {
+    const std::string name = figure_name(text);
     if (std::ranges::find(known, name) == known.end()) {
       throw UsageError("reproduce", fmt::format("there is no figure {} (known: all, {})",
                                                 suggest(name, known), fmt::join(known, ", ")));

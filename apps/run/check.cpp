@@ -108,7 +108,7 @@ void say_output(const Scene& scene, bool empty_history) {
   say("output",
       fmt::format("{} frames, histories of {} bodies, {} points and {} regions every {:g} s",
                   output.frames + 1, bodies, output.points.size(), scene.model.regions.size(),
-                  output.history_interval.value_or(scene.time.end / 1000)));
+                  output.history_interval));
   if (empty_history) {
     say("",
         "history.csv will hold the time alone: name up to a few bodies in output.history.track "

@@ -92,11 +92,11 @@ Json time_step(const Scene& scene, const Simulation& simulation) {
           {"steps", std::ceil(scene.time.end / choice.step)}};
 }
 
-Json output(const OutputSettings& settings, double end) {
+Json output(const OutputSettings& settings) {
   Json json{{"frames", settings.frames + 1},
             {"tracked_bodies", settings.track.size() + settings.track_deformables.size()},
             {"tracked_points", settings.points.size()},
-            {"history_interval", settings.history_interval.value_or(end / 1000)}};
+            {"history_interval", settings.history_interval}};
   json["checkpoint_interval"] =
       settings.checkpoint_interval ? Json(*settings.checkpoint_interval) : Json();
   return json;
@@ -215,7 +215,7 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
   }
   json["contacts_at_start"] = simulation.counts().touching_now;
   json["terms"] = terms;
-  json["output"] = output(scene.output, scene.time.end);
+  json["output"] = output(scene.output);
   if (const Phases phases = phases_of(scene, simulation, estimates.dissipates);
       !phases.text.empty()) {
     json["phases"] = {{"implicit_from_start", phases.from_start}, {"verlet_until", phases.until}};

@@ -50,6 +50,47 @@ void print_load_step(const Run& run) {
              run.scene().model.name_of(step.worst));
 }
 
+// What ended the run before its time, and bodies that have come or left.
+void print_ends(const Run& run) {
+  if (run.stopped_by() == kStoppedOutside) {
+    fmt::print("stopped at t = {:.6g} s: a body left the world\n", run.state().time);
+  } else if (!run.stopped_by().empty() && run.stopped_by() != kStoppedCollapse) {
+    fmt::print("stopped at t = {:.6g} s by the rule \"{}\"\n", run.state().time, run.stopped_by());
+  }
+  const Population* population = run.simulation().population();
+  if (!population) return;
+  const auto say = [](std::int64_t bodies, const char* what) {
+    if (bodies > 0) fmt::print("{} {} {}\n", bodies, bodies == 1 ? "body" : "bodies", what);
+  };
+  say(population->come(), "came in");
+  say(population->left(), "left the world");
+}
+
+// The error of the energy. Load steps of a static run give off energy, so that they have none.
+std::string error_of(const Run& run) {
+  if (run.scene().time.statics) return "";
+  const Extremes extremes = run.simulation().extremes();
+  const double share = extremes.energy_error / extremes.energy_in_play;
+  return fmt::format(
+      ", energy error {:.3g} J{}", extremes.energy_error,
+      std::isfinite(share) ? fmt::format(", {:.1g} of the energy in play", share) : "");
+}
+
+std::string window_of(const Reduction& of) {
+  std::string text;
+  if (of.from) text += fmt::format(" from t = {:g} s", *of.from);
+  if (of.until) text += fmt::format(" until t = {:g} s", *of.until);
+  return text;
+}
+
+void print_outcome(const Expectation& e, const Outcome& outcome) {
+  const std::string unit = e.unit.empty() || e.unit == "1" ? "" : " " + e.unit;
+  fmt::print("  {} {} {}{} = {:.10g}{}, expected {:.10g} +- {:.2g}{}{}\n",
+             outcome.met ? "ok    " : "MISSED", kTakesInWords[static_cast<size_t>(e.take)],
+             e.quantity, window_of(e), outcome.value, unit, e.value, e.tolerance, unit,
+             e.label.empty() ? "" : ": " + e.label);
+}
+
 void print_summary(const Run& run) {
   const State& state = run.state();
   const Scene& scene = run.scene();
@@ -59,6 +100,7 @@ void print_summary(const Run& run) {
   fmt::print("{}: {} {}{} of {:.6g} s, t = {:.6g} s, results in {}\n", scene.model.name, state.step,
              scene.time.statics ? "load steps" : "steps", changed ? ", the last one" : "",
              run.simulation().step_size(), state.time, run.settings().folder);
+  print_ends(run);
   if (!run.beginning().folder.empty()) {
     const std::vector<std::string> others = not_moved(scene.model, run.beginning());
     fmt::print("began with {} bodies of {} at t = {:.6g} s{}\n", run.beginning().bodies.size(),
@@ -73,11 +115,9 @@ void print_summary(const Run& run) {
         changes.shortened, first.time, scene.model.name_of(first.body), changes.lengthened,
         changes.shortest);
   }
-  fmt::print(
-      "largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N, energy "
-      "error {:.3g} J\n",
-      extremes.penetration.value, 100 * extremes.relative_penetration.value, extremes.force.value,
-      extremes.energy_error);
+  fmt::print("largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N{}\n",
+             extremes.penetration.value, 100 * extremes.relative_penetration.value,
+             extremes.force.value, error_of(run));
   if (!run.load_steps().empty()) {
     const LoadStep& last = run.load_steps().back();
     const auto worst =
@@ -89,10 +129,7 @@ void print_summary(const Run& run) {
         imbalance_of_load(last, static_cast<size_t>(worst)));
   }
   for (size_t i = 0; i < run.outcomes().size(); ++i) {
-    const Expectation& e = scene.expectations[i];
-    const Outcome& outcome = run.outcomes()[i];
-    fmt::print("  {} {:<24} {:>18.10g}   expected {:.10g} +- {:.2g}\n",
-               outcome.met ? "ok    " : "MISSED", e.quantity, outcome.value, e.value, e.tolerance);
+    print_outcome(scene.expectations[i], run.outcomes()[i]);
   }
 }
 
@@ -262,6 +299,10 @@ int run_command(const RunOptions& options) {
   if (!options.quiet && !options.json && !settings.resume) {
     const std::string overlaps = describe_overlaps(run.simulation());
     if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
+  }
+  if (settings.resume && options.until && run.state().time >= *options.until) {
+    fmt::print(stderr, "apothem: --until {:g} s: the run in {} is already at t = {:.9g} s\n",
+               *options.until, settings.folder, run.state().time);
   }
   const size_t known = options.json ? 0 : print_warnings(run, 0);
   try {

@@ -83,7 +83,12 @@ struct Envelope {
       }
       return DistanceVolume<Real>().over(placed_distance(), px, py);
     }
-    if (!roof) return volume_under(lines, capped, polygon);
+    if (!roof) {
+      std::vector<Line<Real>> all = lines;
+      if (capped) all.push_back({Vec<Real>(0, 0), 1});
+      lower_envelope::Memory<Real> memory;
+      return volume_under(all, polygon, memory);
+    }
     std::vector<std::vector<Vec<Real>>> faces;
     for (const std::vector<int>& nodes : roof->faces) {
       faces.emplace_back();

@@ -7,6 +7,7 @@
 
 #include "geometry/integrals/distance_volume.hpp"
 #include "geometry/integrals/edge_trace.hpp"
+#include "geometry/integrals/overlap_energy.hpp"
 #include "geometry/integrals/placement.hpp"
 #include "geometry/polygon/boundary_inside.hpp"
 #include "geometry/potential/lower_envelope.hpp"
@@ -73,31 +74,32 @@ Parts convex_parts(const PlacedPotential& p, const PlacedRings& rings) {
 // its convex parts.
 double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& other,
                     const Parts& parts) {
-  std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
-  if (p.roof) {
-    // Convex parts may reach beyond their polygon. Faces that the polygon does not meet are
-    // skipped, because their sum would be 0.
-    const lower_envelope::Bounds<double> reach(other);
-    std::vector<Ring> faces;
-    std::vector<lower_envelope::Line<double>> of_faces;
-    RoofNodes placed;
-    placed.place(p);
-    for (size_t e = 0; e < p.roof->faces.size(); ++e) {
-      Ring face;
-      for (const int i : p.roof->faces[e]) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
-      if (reach.apart(lower_envelope::Bounds<double>(face))) continue;
-      faces.push_back(std::move(face));
-      of_faces.push_back(planes[e]);
+  if (!p.roof) {
+    const Ring outline = placed_rings(p, shift).front();
+    OverlapEnergy energy;
+    double volume = 0;
+    for (const auto& part : parts) {
+      volume +=
+          part.sign * energy.volume_under(p, shift, lower_envelope::inside(part.ring, outline));
     }
-    return lower_envelope::volume_under_faces(faces, of_faces, p.capped, parts);
+    return volume;
   }
-  const Ring outline = placed_rings(p, shift).front();
-  double volume = 0;
-  for (const auto& part : parts) {
-    volume += part.sign * lower_envelope::volume_under(planes, p.capped,
-                                                       lower_envelope::inside(part.ring, outline));
+  // Convex parts may reach beyond their polygon. Faces that the polygon does not meet are skipped,
+  // because their sum would be 0.
+  const std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
+  const lower_envelope::Bounds<double> reach(other);
+  std::vector<Ring> faces;
+  std::vector<lower_envelope::Line<double>> of_faces;
+  RoofNodes placed;
+  placed.place(p);
+  for (size_t e = 0; e < p.roof->faces.size(); ++e) {
+    Ring face;
+    for (const int i : p.roof->faces[e]) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
+    if (reach.apart(lower_envelope::Bounds<double>(face))) continue;
+    faces.push_back(std::move(face));
+    of_faces.push_back(planes[e]);
   }
-  return volume;
+  return lower_envelope::volume_under_faces(faces, of_faces, p.capped, parts);
 }
 
 struct BoxedEdge {
@@ -228,13 +230,15 @@ struct ClippedPair {
 
 }  // namespace
 
-PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
-  const ClippedPair pair(a, b, offset);
-  return {pair.energy(), pair.overlap_area()};
+double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                   OverlapEnergy& memory) {
+  return a.convex() && b.convex() ? memory.of_convex(a, b, offset)
+                                  : ClippedPair(a, b, offset).energy();
 }
 
-double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
-  return ClippedPair(a, b, offset).energy();
+PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+  OverlapEnergy memory;
+  return {pair_energy(a, b, offset, memory), ClippedPair(a, b, offset).overlap_area()};
 }
 
 Vec2 loading_point(const PairIntegral& pair) {

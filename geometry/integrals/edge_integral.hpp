@@ -60,8 +60,10 @@ struct PairVolume {
 /// Computes the energy and the overlap area by clipping. It is meant for ledgers and pictures and
 /// is too slow for the step loop. The arguments are those of pair_integral.
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
-/// The energy of PairVolume alone.
-double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
+class OverlapEnergy;
+/// The energy of PairVolume alone, for histories.
+double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                   OverlapEnergy& memory);
 
 /// Below this fraction of the weight the line of action of a force is determined by round-off only.
 inline constexpr double kNoLineOfAction = 1e-12;

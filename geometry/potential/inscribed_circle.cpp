@@ -57,8 +57,6 @@ constexpr double kSimilar = .7;      // unless halving leaves more than this fra
 constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as zero
 constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
 constexpr double kLong = 8;          // a box longer than so many times its width is halved first
-// Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
-constexpr int kFewEdges = 100;
 
 // A triangle inside the polygon.
 struct Cell {

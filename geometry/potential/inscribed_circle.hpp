@@ -6,6 +6,10 @@
 
 namespace apothem {
 
+/// Up to this number of edges of a convex polygon it is faster to clip every face by all edges than
+/// to search.
+inline constexpr int kFewEdges = 100;
+
 /// Returns the radius of the largest circle inside the polygon, which no hole reaches into, and all
 /// possible centres of such a circle: isolated ones, and the two ends of each segment of centres
 /// (in a corridor with parallel walls), one after the other. Radii that differ by less than 1e-13

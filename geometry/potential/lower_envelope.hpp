@@ -61,20 +61,28 @@ std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Re
   return inside;
 }
 
-/// The part of the polygon where line e is the lowest of all lines. Both faces at a bisector
-/// compute it with the same bits, and of two equal lines only the first one has a face, so no area
-/// counts twice.
+/// Memory of faces, kept between calls.
 template <class Real>
-std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
-                            size_t e) {
-  std::vector<Vec<Real>> part;
-  for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
+struct Memory {
+  std::vector<Vec<Real>> face, part;
+};
+
+/// The part of the polygon where line e is the lowest of all lines, in `memory`. Both faces at a
+/// bisector compute it with the same bits, and of two equal lines only the first one has a face, so
+/// no area counts twice.
+template <class Real>
+const std::vector<Vec<Real>>& face_into(const std::vector<Vec<Real>>& polygon,
+                                        const std::vector<Line<Real>>& lines, size_t e,
+                                        Memory<Real>& memory) {
+  memory.face = polygon;
+  for (size_t j = 1; j < lines.size() && !memory.face.empty(); ++j) {
     const size_t k = (e + j) % lines.size();
-    clip_into(polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height},
-              k > e, part);
-    polygon.swap(part);
+    clip_into(memory.face,
+              {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e,
+              memory.part);
+    memory.face.swap(memory.part);
   }
-  return polygon;
+  return memory.face;
 }
 
 /// INT f dA over a polygon for a linear function f, by a fan of triangles.
@@ -88,21 +96,13 @@ Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
   return sum;
 }
 
-/// INT min_i lines[i] dA over a polygon. If `capped`, the integrand is also limited to 1.
+/// INT min_i lines[i] dA over a polygon. A limit of the integrand is one more line.
 template <class Real>
-Real volume_under(const std::vector<Line<Real>>& lines, bool capped,
-                  const std::vector<Vec<Real>>& polygon) {
-  const Line<Real> one{Vec<Real>(0, 0), 1};
+Real volume_under(const std::vector<Line<Real>>& lines, const std::vector<Vec<Real>>& polygon,
+                  Memory<Real>& memory) {
   Real volume = 0;
   for (size_t e = 0; e < lines.size(); ++e) {
-    const Line<Real>& line = lines[e];
-    const std::vector<Vec<Real>> region = face(polygon, lines, e);
-    if (capped) {
-      volume += area_integral(clip(region, {-line.gradient, 1 - line.height}, true), line) +
-                area_integral(clip(region, {line.gradient, line.height - 1}, false), one);
-    } else {
-      volume += area_integral(region, line);
-    }
+    volume += area_integral(face_into(polygon, lines, e, memory), lines[e]);
   }
   return volume;
 }
@@ -199,8 +199,9 @@ template <class Real>
 std::vector<Corner<Real>> corners(const std::vector<Line<Real>>& lines,
                                   const std::vector<Vec<Real>>& polygon) {
   std::vector<Corner<Real>> result;
+  Memory<Real> memory;
   for (size_t e = 0; e < lines.size(); ++e) {
-    for (const Vec<Real>& point : face(polygon, lines, e)) {
+    for (const Vec<Real>& point : face_into(polygon, lines, e, memory)) {
       result.push_back({point, lines[e](point)});
     }
   }

@@ -89,6 +89,13 @@ Potential envelope_potential(const Polygon& polygon, std::vector<Vec2> gradients
   Potential potential;
   potential.vertices = polygon.local_vertices();
   potential.gradients = std::move(gradients);
+  if (polygon.size() > kFewEdges) {
+    // The gradients are unit vectors, and clipping all faces would take n^3 steps.
+    InscribedCircle circle = largest_inscribed_circle(polygon);
+    potential.top = circle.radius;
+    potential.top_points = std::move(circle.centres);
+    return potential;
+  }
   find_top(potential);
   const double extent = bounding_box(polygon).extent() * potential.gradients[0].norm();
   if (extent > kNeedle * potential.top) potential.top = top_of_needle(polygon, potential);

@@ -91,8 +91,8 @@ Forecast Simulation::forecast() const {
 PhaseSeconds Simulation::phase_seconds() const {
   PhaseSeconds seconds = clock_.seconds();
   for (double& s : seconds) {
-    s *=
-        timed_steps_ > 0 ? static_cast<double>(own_steps()) / static_cast<double>(timed_steps_) : 0;
+    s *= timed_steps_ > 0 ? static_cast<double>(verlet_steps_) / static_cast<double>(timed_steps_)
+                          : 0;
   }
   return seconds;
 }

@@ -157,6 +157,7 @@ void Simulation::take_step() {
   damp(dt / 2);
   control_->follow(state_, lambda_);
   clock_.lap(Phase::integrate);
+  ++verlet_steps_;
   timed_steps_ += timed;
   watch();
 }

@@ -133,7 +133,7 @@ class Simulation {
   /// The terms of the scene, in their order.
   [[nodiscard]] const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
 
-  /// Seconds per part of the step over the whole run, extrapolated from the steps that were timed.
+  /// Seconds per part of the steps by velocity Verlet, extrapolated from those that were timed.
   [[nodiscard]] PhaseSeconds phase_seconds() const;
   /// Steps taken by this object, without those before a checkpoint.
   [[nodiscard]] std::int64_t own_steps() const { return state_.step - steps_before_; }
@@ -184,7 +184,7 @@ class Simulation {
       0;  // touching pairs, summed over the steps, at the last regular look
   std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
   Stopwatch clock_;
-  std::int64_t timed_steps_ = 0;
+  std::int64_t verlet_steps_ = 0, timed_steps_ = 0;  // of this object; the latter are some of them
 };
 
 }  // namespace apothem

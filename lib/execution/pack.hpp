@@ -15,10 +15,16 @@
 #include <utility>
 
 // Forces inlining. A kernel is compiled once per instruction set, and every function that it calls
-// has to be inlined, so that it is compiled for the same instruction set.
+// has to be inlined, so that it is compiled for the same instruction set. Under the sanitizers
+// there is one version (dispatch.hpp), and kernels that are not inlined compile in a third of the
+// time. APOTHEM_LAMBDA is the same for a lambda, behind its parameters.
+#ifdef __SANITIZE_ADDRESS__
+#define APOTHEM_INLINE inline
+#define APOTHEM_LAMBDA
+#else
 #define APOTHEM_INLINE inline __attribute__((always_inline))
-// The same for a lambda, behind its parameters.
 #define APOTHEM_LAMBDA __attribute__((always_inline))
+#endif
 
 namespace apothem {
 

@@ -35,7 +35,7 @@ struct TimeSettings {
 
 struct OutputSettings {
   int frames = 100;                                ///< besides the one at time 0
-  std::optional<double> history_interval;          ///< s; empty: end / 1000
+  double history_interval = 1e300;                 ///< s
   std::vector<RigidIndex> track;                   ///< rigid bodies in history.csv
   std::vector<DeformableIndex> track_deformables;  ///< deformable bodies as a whole
   std::vector<DeformableIndex> track_surfaces;  ///< deformable bodies whose contact pressure counts

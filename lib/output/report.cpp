@@ -34,7 +34,8 @@ struct VerdictText {
 constexpr std::array kVerdictTexts{
     VerdictText{"reproduced", "reproduced"},
     VerdictText{"reproduced with an explained difference", "explained"},
-    VerdictText{"contradicted", "contradicted"}, VerdictText{"not in the paper", "own"}};
+    VerdictText{"of the same kind, without a number to compare", "alike"},
+    VerdictText{"not confirmed", "not_confirmed"}, VerdictText{"not in the paper", "own"}};
 
 size_t missed(const ReportFigure& figure) {
   return static_cast<size_t>(

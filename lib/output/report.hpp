@@ -24,11 +24,12 @@ struct ReportNumber {
   std::string source = {};          ///< where the reference comes from; may be empty
 };
 
-/// Whether a figure of the paper comes out. `own`: the paper has no such figure.
-enum class Verdict { reproduced, explained, contradicted, own };
+/// Whether a figure of the paper comes out. `alike`: what is shown is of the same kind, but there
+/// is no number to compare. `own`: the paper has no such figure.
+enum class Verdict { reproduced, explained, alike, not_confirmed, own };
 /// The verdicts by name, in the order of Verdict.
-inline constexpr std::array<std::string_view, 4> kVerdicts{"reproduced", "explained",
-                                                           "contradicted", "own"};
+inline constexpr std::array<std::string_view, 5> kVerdicts{"reproduced", "explained", "alike",
+                                                           "not_confirmed", "own"};
 
 /// Something that the paper does not say, and what was done.
 struct OpenQuestion {

@@ -21,8 +21,8 @@ dt { font-weight: bold; }
 dd { margin: 0 0 .6em 1.2em; }
 .badge { display: inline-block; border-radius: .3em; padding: 0 .5em; font-weight: bold; border: 1px solid; }
 .reproduced { background: #ddf0dd; color: #14521a; }
-.explained { background: #fff0cc; color: #604a00; white-space: nowrap; }
-.contradicted, .missing { background: #fde2dd; color: #801c10; }
+.explained, .alike { background: #fff0cc; color: #604a00; white-space: nowrap; }
+.not_confirmed, .missing { background: #fde2dd; color: #801c10; }
 .own { background: #e6e9f2; color: #2c3a66; }
 p.top { font-size: 14px; }
 /* On a narrow screen every row is a list of its cells, each behind the head of its column, numbers
@@ -30,7 +30,7 @@ p.top { font-size: 14px; }
 @media screen and (max-width: 800px) {
   body { margin: 1em auto; padding: 0 .7em; }
   h1 { font-size: 1.5em; }
-  .explained { white-space: normal; }
+  .explained, .alike { white-space: normal; }
   .picture img { max-width: none; width: 680px; }
   .picture::before { content: "scrolls sideways \2192"; display: block; position: sticky; left: 0; color: #666; font-size: 13px; }
   table, tbody, td { display: block; }

@@ -41,9 +41,7 @@ std::string duration(double seconds) {
 
 OutputCost output_cost(const Scene& scene, double steps) {
   const OutputSettings& output = scene.output;
-  const double rows_wanted =
-      scene.time.statics ? steps
-                         : scene.time.end / output.history_interval.value_or(scene.time.end / 1000);
+  const double rows_wanted = scene.time.statics ? steps : scene.time.end / output.history_interval;
   const double rows = 1 + std::min(rows_wanted, steps);
   OutputCost cost;
   cost.frames = 1 + (scene.time.statics ? steps : std::min<double>(output.frames, steps));

@@ -39,8 +39,7 @@ Run::Run(Scene scene, const RunSettings& settings)
   scene_.document = JsonValue();  // only errors at the start need their places
   const std::string& folder = settings_.folder;
   if (!settings_.resume) progress_.load_path = LoadPath(scene_.time.end);
-  rows_ =
-      Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
+  rows_ = Schedule(scene_.output.history_interval, progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
   if (scene_.automatic_scheme && scene_.time.scheme == TimeScheme::verlet) {
     quiet_.emplace(scene_.model, simulation_->degrees_of_freedom(), scene_.time.accuracy);

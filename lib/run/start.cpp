@@ -91,7 +91,7 @@ Trial try_steps(const Scene& scene, int threads, double seconds) {
   Trial trial;
   const Clock::time_point start = Clock::now();
   try {
-    const double rows = scene.output.history_interval.value_or(scene.time.end / 1000);
+    const double rows = scene.output.history_interval;
     while (trial.seconds < seconds && simulation->state().time < scene.time.end) {
       simulation->step(std::min(scene.time.end, simulation->state().time + rows));
       trial.steps = simulation->own_steps();

@@ -23,6 +23,13 @@ int index_in(const std::vector<Body>& bodies, const std::string& name) {
 
 }  // namespace
 
+int default_rows(const Model& model, const OutputSettings& output) {
+  const bool tracks = !output.track.empty() || !output.track_deformables.empty() ||
+                      !output.points.empty() || !model.regions.empty();
+  const bool few = model.bodies.size() + model.deformables.size() <= kMostByDefault;
+  return tracks || few ? 1000 : 100;
+}
+
 void OutputReader::track_by_default() {
   std::vector<int>& track = output_.track;
   for (size_t i = 0; i < model_.bodies.size(); ++i) {

@@ -12,6 +12,10 @@
 
 namespace apothem {
 
+/// Rows of the histories of a scene that does not choose an interval: fewer where they are sums
+/// over many bodies only, each of which costs about half of a step.
+int default_rows(const Model& model, const OutputSettings& output);
+
 class OutputReader {
  public:
   /// The model is complete. `bodies` are the names of its bodies in the order of the scene. Both

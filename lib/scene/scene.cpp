@@ -177,7 +177,10 @@ class SceneReader {
     OutputReader reader(in_, model_, bodies, scene_.output, features_);
     reader.track_by_default();
     if (output) reader.read(*output);
-    scene_.time.longest_step = scene_.output.history_interval.value_or(scene_.time.end / 1000);
+    if (!scene_.time.statics && !features_.uses(Feature::history_interval)) {
+      scene_.output.history_interval = scene_.time.end / default_rows(model_, scene_.output);
+    }
+    scene_.time.longest_step = scene_.output.history_interval;
     add_features_of_all_bodies();
     refuse_incompatible(in_, features_);
     scene_.automatic_scheme = !scene_.time.statics &&

@@ -27,7 +27,7 @@ struct Written {
 Written run_and_read(const Folder& folder, const std::string& text,
                      std::optional<double> interval = {}) {
   Scene scene = scene_of(folder, text);
-  if (interval) scene.output.history_interval = interval;
+  if (interval) scene.output.history_interval = *interval;
   Run run(std::move(scene), {.folder = folder / "out", .overwrite = true});
   Written found;
   found.status = run.run();

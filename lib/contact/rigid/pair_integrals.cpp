@@ -209,11 +209,14 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
 double PairIntegrals::energy(const PairTable& table) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   energies_.resize(touching_.size());
-  threads_.chunks(static_cast<int>(touching_.size()), kPairTime, [&](int first, int end, int) {
+  energy_memory_.resize(static_cast<size_t>(threads_.count()));
+  threads_.chunks(static_cast<int>(touching_.size()), kPairTime, [&](int first, int end, int at) {
+    OverlapEnergy& memory = energy_memory_[static_cast<size_t>(at)];
     for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
       const SurfaceIndex a = touching_[i].a, b = touching_[i].b;
       const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
-      energies_[i] = k * pair_energy(shapes.view(a), shapes.view(b), surfaces_.between(a, b));
+      energies_[i] =
+          k * pair_energy(shapes.view(a), shapes.view(b), surfaces_.between(a, b), memory);
     }
   });
   return std::accumulate(energies_.begin(), energies_.end(), 0.);

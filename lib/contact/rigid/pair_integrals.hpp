@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/overlap_energy.hpp"
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/law/pair_table.hpp"
 #include "lib/execution/parallel.hpp"
@@ -164,6 +165,7 @@ class PairIntegrals {
   std::vector<PairInTouch> touching_;
   std::vector<PatchRanges> patch_ranges_;  // of each pair that is split
   mutable std::vector<double> energies_;   // energy of each touching pair, found when asked for, N
+  mutable std::vector<OverlapEnergy> energy_memory_;  // of each thread
   std::vector<PairWorkspace> workers_;
 };
 

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "geometry/exact/exact_integral.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
 #include "tests/support.hpp"
 
@@ -132,6 +133,41 @@ TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
       REQUIRE(std::abs(pair.moment_a + pair.moment_b + cross(x, pair.force)) < 1e-14 * scale * 10);
     }
   }
+}
+
+// Most lines of a polygon with many sides have no face over the overlap, and are left out.
+TEST_CASE("the energy of many-sided polygons is that of 100 digits", "[edge]") {
+  test::SeededRandom random(141);
+  int shallow = 0, deep = 0;
+  for (int i = 0; i < test::scaled(80); ++i) {
+    const auto polygon = [&] {
+      const int corners = random.integer(3, i % 8 == 0 ? 150 : 24);
+      const Polygon shape = random.integer(0, 3) == 0 ? samples::regular(corners)
+                                                      : samples::random_convex(random, corners);
+      return samples::turned(shape, random.uniform(0, 6.3));
+    };
+    const Polygon a = polygon(), other = polygon();
+    const double angle = random.uniform(0, 6.3);
+    const Vec2 way(std::cos(angle), std::sin(angle));
+    const Box of_a = bounding_box(a), of_b = bounding_box(other);
+    const Vec2 centres(of_a.x0 + of_a.x1 - of_b.x0 - of_b.x1,
+                       of_a.y0 + of_a.y1 - of_b.y0 - of_b.y1);
+    // A touch, an overlap or one polygon within the other.
+    const double reach = (of_a.extent() + of_b.extent()) / 2 * random.uniform(0, 1);
+    const Polygon b = samples::shifted(other, centres / 2 + reach * way);
+    // A given length limits the potential.
+    const PotentialChoice choice =
+        i % 3 == 0 ? test::length_choice(random.uniform(.02, .5)) : PotentialChoice{};
+    INFO("pair " << i << ": " << a.size() << " and " << b.size() << " corners");
+    const PairResult exact = exact_method(a, b, choice);
+    const double energy = test::edge(a, b, choice).volume.energy;
+    CHECK(std::abs(energy - exact.volume.energy) <=
+          1e-13 * exact.integral.weight * (of_a.extent() + of_b.extent()));
+    if (energy > 0) ++(exact.volume.overlap_area < .1 ? shallow : deep);
+  }
+  if (test::kSanitized) return;
+  CHECK(shallow > 2);
+  CHECK(deep > 2);
 }
 
 TEST_CASE("work along closed paths", "[edge]") {
