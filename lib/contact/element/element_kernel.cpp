@@ -161,7 +161,7 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back({a, b, force, point, offset, k * pair.weight});
+  touches_.push_back({a, b, force, point, offset, k * pair.weight, pair.depth});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& place) {
     find_corners(i, place, of_a_);
     distribute(of_a_, f, normal_);
@@ -292,8 +292,8 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& dashpots) {
         {body_a,
          body_b,
          normal,
-         {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction), size,
-                          size / t.stiffness}},
+         {Dashpot::Normal::of(t.stiffness * time(law.damping.normal, pair.resistance, direction),
+                              size, t.stiffness, t.depth)},
          t.spring_stiffness *
              time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
          t.spring,

@@ -21,12 +21,29 @@ double dashpot_time(double value, bool is_time, double k, double mobility) {
 }
 
 // If the force rises with the power p of the depth, the stiffness is p times the force over the
-// depth, and the damping coefficient rises with the square root of the stiffness. p is 1 for flat
-// faces and 2 at a corner.
-Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest) {
-  if (!(stiffness > 0 && pressed > 0)) return {rate, pressed, 0, 1};
+// depth. p is 1 for flat faces and 2 at a corner.
+Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest,
+                                    double plateau) {
+  if (!(stiffness > 0 && pressed > 0)) return {.rate = rate, .pressed = pressed};
   const double power = std::clamp(stiffness * deepest / pressed, 1., 2.);
-  return {rate, pressed, power * pressed / stiffness, 2 / (power + 1)};
+  const double level = plateau * (2 / power - 1);
+  const double least = level < 1 ? 2 * (1 / power - level) / (1 - level) - 1 : 1;
+  return {rate, pressed, power * pressed / stiffness, power, level, std::clamp(least, 0., 1.)};
+}
+
+// With the largest depth D = pN/K, the coefficient c, and s = c u/(p N) for the rate u at which the
+// sides part, points that are less deep than s D have no pressure. So the force is -c u = -p N s up
+// to s = `least`, and from there to s = 1 it is -N (1 - p y (level + even y)) with y = 1 - s. The
+// rate depends on the force: with `kept`, this makes a quadratic equation for y.
+double Dashpot::Normal::push(double free, double elastic, double kept) const {
+  if (free >= -power * least * elastic) return free;
+  const double more = elastic * (kept + power * (1 - kept)) + free;
+  if (!(more > 0)) return -elastic;
+  const double even = least < 1 ? (1 - level) / (2 * (1 - least)) : 0;
+  const double linear = power * (kept * level + (1 - kept)), most = more / elastic;
+  const double y =
+      2 * most / (linear + std::sqrt(linear * linear + 4 * kept * power * even * most));
+  return -elastic * (1 - power * y * (level + even * y));
 }
 
 void Dashpots::clear() {
@@ -151,7 +168,7 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
 
 // A dashpot acts for half of the last drift and half of the next one. If the contact began within
 // the last drift, or will end within the next one, it acts only for as long as the contact is
-// closed.
+// closed, with the mean of the coefficient, which rises with the square root of the stiffness.
 void Dashpots::find_rates(double dt) {
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     const Dashpot& dashpot = dashpots_[i];
@@ -165,7 +182,8 @@ void Dashpots::find_rates(double dt) {
       }
     }
     const auto closed_fraction = [&](double approach, const Dashpot::Normal& normal) {
-      return approach * dt > normal.depth ? normal.mean * normal.depth / (approach * dt) : .5;
+      if (!(approach * dt > normal.depth)) return .5;
+      return 2 / (normal.power + 1) * normal.depth / (approach * dt);
     };
     double fraction = 0;  // larger fraction of the step for which one end of the contact is closed
     for (size_t k = 0; k < 2; ++k) {
@@ -218,20 +236,25 @@ double Dashpots::relax(size_t i, double dt) {
     for (size_t k = 0; k < 3; ++k) rate[k] += e.part[k] * v;
   }
   std::array<double, 3> change;
-  const auto follow = [&](size_t k, double behind, double least, double most) {
-    Along& along = solved.along[k];
-    const double free = along.kept * along.impulse - along.gain * behind - along.offset;
-    const double next = std::clamp(free, least, most);
-    change[k] = next - along.impulse;
-    along.impulse = next;
+  const auto free = [&](size_t k, double behind) {
+    const Along& along = solved.along[k];
+    return along.kept * along.impulse - along.gain * behind - along.offset;
   };
-  follow(0, rate[0], -dashpot.across[0].pressed * dt, HUGE_VAL);
-  follow(1, rate[1] + solved.d01 * change[0], -dashpot.across[1].pressed * dt, HUGE_VAL);
+  const auto set = [&](size_t k, double impulse) {
+    change[k] = impulse - solved.along[k].impulse;
+    solved.along[k].impulse = impulse;
+  };
+  const auto push = [&](size_t k, double behind) {
+    const Dashpot::Normal& across = dashpot.across[k];
+    set(k, across.push(free(k, behind), across.pressed * dt, solved.along[k].kept));
+  };
+  push(0, rate[0]);
+  push(1, rate[1] + solved.d01 * change[0]);
   const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
                          solved.along[0].impulse + solved.along[1].impulse;
   const double limit = friction_limit(dashpot.coefficient, pressed), spring = dashpot.spring * dt;
-  follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
-         limit - spring);
+  const double behind = rate[2] + solved.d02 * change[0] + solved.d12 * change[1];
+  set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
   for (const Entry& e : entries(i)) {
     Moving& moving = moving_[e.moved];
     moving.velocity += moving.inverse_mass *

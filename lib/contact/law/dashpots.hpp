@@ -15,8 +15,10 @@
 // they agree. Energy is removed for any coefficient, step and masses, and for any number of sweeps,
 // so dashpots do not limit the step. g vanishes in rigid motion, so that momenta are conserved.
 //
-// A contact does not pull: J >= -N h along the normal, with the elastic force N. Along the tangent
-// the friction spring and the dashpot beside it together stay within Coulomb's limit.
+// A contact does not pull at any of its points. Those that are less deep than the time c/K times
+// the rate at which the sides part have no pressure, and the dashpot takes less there
+// (Normal::push). Along the tangent the friction spring and the dashpot beside it together stay
+// within Coulomb's limit.
 #pragma once
 
 #include <array>
@@ -41,10 +43,19 @@ struct Dashpot {
     double rate = 0;     ///< coefficient, N s/m
     double pressed = 0;  ///< elastic normal force at its point, N
     double depth = 0;    ///< depth over which this force has risen from zero, m
-    double mean = 1;     ///< mean of the coefficient over this depth, as a fraction of `rate`
-    /// The dashpot at a point with the contact stiffness `stiffness`, N/m. `deepest` is the depth
-    /// of the whole contact, m.
-    static Normal of(double rate, double pressed, double stiffness, double deepest);
+    double power = 1;    ///< power of the depth with which it has risen: 1 if flat, 2 at a corner
+    // The depths of its points: a part `level` of them has the depth above, and those of the others
+    // are spread evenly between this and the fraction `least` of it.
+    double level = 0, least = 1;
+    /// The dashpot of a part of a contact with the contact stiffness `stiffness`, N/m. `deepest` is
+    /// the largest depth of the part, m. If not all of its points are so deep, the fraction
+    /// `plateau` says how many are: none with 0, and with 1 as many as can be if the others begin
+    /// at the surface.
+    static Normal of(double rate, double pressed, double stiffness, double deepest,
+                     double plateau = 0);
+    /// The impulse, N s, if none of its points pulls. It is `free` if they could, and `elastic` is
+    /// that of `pressed`. `kept` is the fraction of an impulse on the dashpot that it takes back.
+    [[nodiscard]] double push(double free, double elastic, double kept) const;
   };
   std::array<Normal, 2> across;
   double tangential_rate = 0;  ///< coefficient along the tangent, N s/m
