@@ -230,11 +230,12 @@ double ElementKernel::update_friction(const Kinematics& now, double dt, Friction
     const double constant = law.friction.tangential_stiffness * thickness_;
     t.spring_stiffness = constant > 0 ? constant : law.friction.stiffness_ratio * t.stiffness;
     const double pressed = t.force.norm() + old.push;
+    const double slip = rate.dot(tangent);
     const CoulombSpring<double> spring{
         t.spring_stiffness,
-        now.restored ? HUGE_VAL : friction_limit(law.friction.coefficient, pressed)};
+        now.restored ? HUGE_VAL : FrictionLimit<double>::of(law)(pressed, slip)};
     const double kept = old.stiffness > 0 ? std::min(1., spring.stiffness / old.stiffness) : 0;
-    t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
+    t.spring = spring.after(kept * old.force, slip * dt);
     memory.keep({key, t.spring, spring.stiffness, tangent, old.push});
     t.friction = t.spring * tangent;
     const auto add_friction = [&](SurfaceIndex i, const Vec2& f, const Vec2& point,
@@ -297,7 +298,7 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& dashpots) {
          t.spring_stiffness *
              time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
          t.spring,
-         law.friction.coefficient});
+         FrictionLimit<double>::of(law)});
     const auto add_side = [&](SurfaceIndex i, const Vec2& point, double sign) {
       if (surfaces_.is_rigid(i)) return dashpots.add_point(i, point, sign * normal, sign * across);
       find_corners(i, point, of_a_);

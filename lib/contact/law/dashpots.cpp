@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/contact/law/coulomb_spring.hpp"
-
 namespace apothem {
 namespace {
 
@@ -194,6 +192,7 @@ void Dashpots::find_rates(double dt) {
       solved.along[k] = {0, across.rate * both * dt, before[k]};
     }
     solved.along[2] = {0, dashpot.tangential_rate * fraction * dt, before[2]};
+    solved.slip = before[2];
     for (const Entry& e : entries(i)) {
       double& reach = moved_[e.moved].reach;
       for (size_t k = 0; k < 3; ++k) reach += solved.along[k].gain * std::abs(e.part[k]);
@@ -230,11 +229,16 @@ void Dashpots::find_gains() {
 double Dashpots::relax(size_t i, double dt) {
   const Dashpot& dashpot = dashpots_[i];
   Solved& solved = solved_[i];
-  std::array<double, 3> rate{};
-  for (const Entry& e : entries(i)) {
+  // Two sums, each of every second entry, because an addition has to wait for the one before.
+  const std::span<const Entry> all = entries(i);
+  std::array<double, 3> rate{}, rest{};
+  const auto add = [&](const Entry& e, std::array<double, 3>& sum) {
     const double v = moving_[e.moved].velocity;
-    for (size_t k = 0; k < 3; ++k) rate[k] += e.part[k] * v;
-  }
+    for (size_t k = 0; k < 3; ++k) sum[k] += e.part[k] * v;
+  };
+  for (size_t e = 0; e + 1 < all.size(); e += 2) add(all[e], rate), add(all[e + 1], rest);
+  if (all.size() % 2 == 1) add(all.back(), rate);
+  for (size_t k = 0; k < 3; ++k) rate[k] += rest[k];
   std::array<double, 3> change;
   const auto free = [&](size_t k, double behind) {
     const Along& along = solved.along[k];
@@ -252,10 +256,10 @@ double Dashpots::relax(size_t i, double dt) {
   push(1, rate[1] + solved.d01 * change[0]);
   const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
                          solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = friction_limit(dashpot.coefficient, pressed), spring = dashpot.spring * dt;
+  const double limit = dashpot.limit(pressed / dt, solved.slip) * dt, spring = dashpot.spring * dt;
   const double behind = rate[2] + solved.d02 * change[0] + solved.d12 * change[1];
   set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
-  for (const Entry& e : entries(i)) {
+  for (const Entry& e : all) {
     Moving& moving = moving_[e.moved];
     moving.velocity += moving.inverse_mass *
                        (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
@@ -272,15 +276,16 @@ void Dashpots::solve(const Motion& motion, double dt) {
   for (const Dashpot& dashpot : dashpots_) {
     pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);
   }
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  // One pass is never enough: it leaves the order of the contacts in the result.
+  for (int pass = 0; pass < 2 * kMostSweeps; ++pass) {
     double change = 0, largest = pressed * dt;
-    for (size_t i = 0; i < dashpots_.size(); ++i) relax(i, dt);
-    for (size_t i = dashpots_.size(); i-- > 0;) {
+    for (size_t n = 0; n < dashpots_.size(); ++n) {
+      const size_t i = pass % 2 == 0 ? n : dashpots_.size() - 1 - n;
       change = std::max(change, relax(i, dt));
       const std::array<Along, 3>& along = solved_[i].along;
       largest = std::max(largest, std::abs(along[0].impulse + along[1].impulse));
     }
-    if (change <= kAgree * largest) break;
+    if (pass > 0 && change <= kAgree * largest) break;
   }
   sum_forces(motion, dt);
 }

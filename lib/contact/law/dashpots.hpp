@@ -28,7 +28,7 @@
 
 #include "geometry/polygon/point.hpp"
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/law.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/mesh/indices.hpp"
 
 namespace apothem {
@@ -60,7 +60,7 @@ struct Dashpot {
   std::array<Normal, 2> across;
   double tangential_rate = 0;  ///< coefficient along the tangent, N s/m
   double spring = 0;           ///< force of the friction spring, N
-  double coefficient = 0;      ///< coefficient of friction
+  FrictionLimit<double> limit = {};
 };
 
 /// The coefficient of a dashpot over the stiffness `k` (N/m) of the spring beside it, s. This is
@@ -171,6 +171,7 @@ class Dashpots {
     std::uint32_t first;               // index of its first entry
     std::array<Along, 3> along;        // along the normal at both points, and along the tangent
     double d01 = 0, d02 = 0, d12 = 0;  // change of one rate by an impulse along another one, 1/kg
+    double slip = 0;                   // rate along the tangent half a step before, m/s
   };
   std::uint32_t find(size_t first, size_t count);
   template <size_t count>

@@ -64,7 +64,7 @@ APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<R
          [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.stiffness_ratio; });
   number(p.constant, [&](const PairLaw& l)
                          APOTHEM_LAMBDA { return l.friction.tangential_stiffness * thickness; });
-  number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
+  p.limit.each_parameter(number);
 }
 
 // Reads the integrals of a pair and the positions of its bodies, which its load needs.
@@ -206,7 +206,7 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
   if (law.rough()) {
     dashpot.tangential_rate = rate(law.damping.tangential, p.tangential_stiffness(), across);
     dashpot.spring = spring;
-    dashpot.coefficient = law.friction.coefficient;
+    dashpot.limit = FrictionLimit<double>::of(law);
   }
   // The strip of the contact is represented by two dashpots that resist its rotation as a uniformly
   // distributed one does.

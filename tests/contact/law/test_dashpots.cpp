@@ -151,7 +151,7 @@ TEST_CASE("a contact does not pull, and friction with its dashpot obeys Coulomb"
   const std::vector<double> velocity{0, 5, 0, 0, 0};  // it leaves the node
   const double dt = .01;
   Dashpot contact{0, 1, Vec2(0, 1), {Dashpot::Normal{1e6, 30, 1e9}}, 1e6};
-  contact.coefficient = .4;
+  contact.limit.coefficient = .4;
   contact.spring = 5;
   dashpots.add(contact);
   dashpots.add_point(0, {0, -1}, {0, 1}, {-1, 0});
