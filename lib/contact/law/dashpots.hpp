@@ -146,6 +146,7 @@ class Dashpots {
     double kick = 0;        // change of velocity by all other forces over this step
     double reach = 0;       // impulse per velocity of all its dashpots together, N s/(m/s)
     double force = 0;
+    std::uint32_t layer = 0;  // layer after the last one of its dashpots, see find_order
 
     // The ledger needs these values of the step before.
     void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
@@ -181,6 +182,7 @@ class Dashpots {
   void find_kicks(const Motion& motion, double dt);
   void find_rates(double dt);
   void find_gains();
+  void find_order();
   double relax(size_t i, double dt);
   void sum_forces(const Motion& motion, double dt);
 
@@ -190,6 +192,9 @@ class Dashpots {
   std::vector<Entry> entries_;
   std::vector<Moved> moved_;             // coordinates in the order in which they were first added
   std::vector<Moving> moving_;           // the same coordinates while solving
+  std::vector<std::uint32_t> order_;     // the contacts in the order of their layers
+  std::vector<std::uint32_t> layer_of_;  // layer of each contact
+  std::vector<std::uint32_t> places_;    // first place in order_ of each layer
   std::vector<std::uint32_t> index_;     // index of every coordinate in moved_, or kNone
   std::vector<Entry> across_rails_;      // parts of entries across the rails of bodies
   std::vector<std::uint32_t> of_these_;  // the contact of each of these parts
