@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace apothem {
 namespace {
 
-constexpr int kMostSweeps = 50;
-constexpr double kAgree = 1e-6;  // tolerance relative to the largest impulse, or to the elastic
-                                 // normal impulse of the step
+constexpr int kMostPasses = 100;
+constexpr double kRelaxTime = 30;  // ns
+constexpr double kAgree = 1e-6;    // tolerance relative to the largest impulse, or to the elastic
+                                   // normal impulse of the step
 
 }  // namespace
 
@@ -225,12 +227,12 @@ void Dashpots::find_gains() {
 }
 
 // The dashpots of contacts that share no body do not depend on each other. Each contact gets a
-// layer above those of the contacts before it that share a body with it. In the order of the layers
-// the result is the same to the last bit, but the processor need not wait for one contact before it
-// begins with the next one.
+// layer above those of the contacts before it that share a body with it. Layer by layer the result
+// is the same to the last bit as contact by contact, but threads can share the work, and a
+// processor need not wait for one contact before it begins with the next one.
 void Dashpots::find_order() {
   layer_of_.resize(dashpots_.size()), order_.resize(dashpots_.size());
-  places_.assign(1, 0);
+  ends_.clear();
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     std::uint32_t layer = 0;
     for (const Entry& e : entries(i)) {
@@ -238,12 +240,13 @@ void Dashpots::find_order() {
     }
     for (const Entry& e : entries(i)) moved_[e.moved].layer = layer + 1;
     layer_of_[i] = layer;
-    if (layer + 2 > places_.size()) places_.resize(layer + 2, 0);
-    ++places_[layer + 1];
+    if (layer == ends_.size()) ends_.push_back(0);
+    ++ends_[layer];
   }
-  for (size_t layer = 1; layer < places_.size(); ++layer) places_[layer] += places_[layer - 1];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& end : ends_) sum += std::exchange(end, sum);  // now where each one begins
   for (size_t i = 0; i < dashpots_.size(); ++i) {
-    order_[places_[layer_of_[i]]++] = static_cast<std::uint32_t>(i);
+    order_[ends_[layer_of_[i]]++] = static_cast<std::uint32_t>(i);
   }
 }
 
@@ -284,10 +287,33 @@ double Dashpots::relax(size_t i, double dt) {
   set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
   for (const Entry& e : all) {
     Moving& moving = moving_[e.moved];
+    if (!(moving.inverse_mass > 0)) continue;  // other threads may read it
     moving.velocity += moving.inverse_mass *
                        (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
   }
   return std::max({std::abs(change[0]), std::abs(change[1]), std::abs(change[2])});
+}
+
+Dashpots::Pass Dashpots::relax_all(bool forwards, double dt) {
+  for (Pass& worker : workers_) worker = {};
+  for (size_t k = 0; k < ends_.size(); ++k) {
+    const size_t layer = forwards ? k : ends_.size() - 1 - k;
+    const std::uint32_t begin = layer == 0 ? 0 : ends_[layer - 1];
+    threads_.chunks(static_cast<int>(ends_[layer] - begin), kRelaxTime,
+                    [&](int first, int end, int number) {
+                      Pass pass;
+                      for (int n = first; n < end; ++n) {
+                        const size_t i = order_[begin + static_cast<size_t>(n)];
+                        const double change = relax(i, dt);
+                        const std::array<Along, 3>& along = solved_[i].along;
+                        pass.add({change, std::abs(along[0].impulse + along[1].impulse)});
+                      }
+                      workers_[static_cast<size_t>(number)].add(pass);
+                    });
+  }
+  Pass all;
+  for (const Pass& worker : workers_) all.add(worker);
+  return all;
 }
 
 void Dashpots::solve(const Motion& motion, double dt) {
@@ -301,15 +327,9 @@ void Dashpots::solve(const Motion& motion, double dt) {
     pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);
   }
   // One pass is never enough: it leaves the order of the contacts in the result.
-  for (int pass = 0; pass < 2 * kMostSweeps; ++pass) {
-    double change = 0, largest = pressed * dt;
-    for (size_t n = 0; n < dashpots_.size(); ++n) {
-      const size_t i = order_[pass % 2 == 0 ? n : dashpots_.size() - 1 - n];
-      change = std::max(change, relax(i, dt));
-      const std::array<Along, 3>& along = solved_[i].along;
-      largest = std::max(largest, std::abs(along[0].impulse + along[1].impulse));
-    }
-    if (pass > 0 && change <= kAgree * largest) break;
+  for (int k = 0; k < kMostPasses; ++k) {
+    const Pass pass = relax_all(k % 2 == 0, dt);
+    if (k > 0 && pass.change <= kAgree * std::max(pass.largest, pressed * dt)) break;
   }
   sum_forces(motion, dt);
 }

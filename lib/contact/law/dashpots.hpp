@@ -21,6 +21,7 @@
 // within Coulomb's limit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -29,6 +30,7 @@
 #include "geometry/polygon/point.hpp"
 #include "lib/archive/archive.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
+#include "lib/execution/parallel.hpp"
 #include "lib/mesh/indices.hpp"
 
 namespace apothem {
@@ -92,7 +94,10 @@ class Dashpots {
     std::span<const Rail> rails = {};
   };
 
-  explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
+  explicit Dashpots(int rigid_bodies, int threads = 1)
+      : nodes_(3 * static_cast<size_t>(rigid_bodies)),
+        threads_(threads),
+        workers_(static_cast<size_t>(threads_.count())) {}
 
   /// Removes all contacts. Every step adds its contacts again, always in the same order.
   void clear();
@@ -178,15 +183,25 @@ class Dashpots {
   template <size_t count>
   void add(size_t first, const std::array<Parts, count>& parts);
   void put_on(const Motion::Rail& rail);
+  // The largest change and the largest normal impulse in a pass over contacts, N s.
+  struct Pass {
+    double change = 0, largest = 0;
+    void add(const Pass& other) {
+      change = std::max(change, other.change), largest = std::max(largest, other.largest);
+    }
+  };
   [[nodiscard]] std::span<const Entry> entries(size_t i) const;
   void find_kicks(const Motion& motion, double dt);
   void find_rates(double dt);
   void find_gains();
   void find_order();
   double relax(size_t i, double dt);
+  Pass relax_all(bool forwards, double dt);
   void sum_forces(const Motion& motion, double dt);
 
   size_t nodes_;  // the first coordinate of a node
+  Threads threads_;
+  std::vector<Pass> workers_;
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
@@ -194,7 +209,7 @@ class Dashpots {
   std::vector<Moving> moving_;           // the same coordinates while solving
   std::vector<std::uint32_t> order_;     // the contacts in the order of their layers
   std::vector<std::uint32_t> layer_of_;  // layer of each contact
-  std::vector<std::uint32_t> places_;    // first place in order_ of each layer
+  std::vector<std::uint32_t> ends_;      // end of each layer in order_
   std::vector<std::uint32_t> index_;     // index of every coordinate in moved_, or kNone
   std::vector<Entry> across_rails_;      // parts of entries across the rails of bodies
   std::vector<std::uint32_t> of_these_;  // the contact of each of these parts
