@@ -33,7 +33,7 @@ py::array contacts(const Driver& driver) {
   }
   const std::vector<ContactRecord> records = driver.look().simulation().contacts();
   py::array array(py::dtype(names, formats, offsets, static_cast<py::ssize_t>(size)),
-                  {static_cast<py::ssize_t>(records.size())});
+                  static_cast<py::ssize_t>(records.size()));
   auto* next = static_cast<char*>(array.mutable_data());
   const auto put = [&](const void* from, size_t bytes) {
     std::memcpy(next, from, bytes);
