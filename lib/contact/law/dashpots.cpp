@@ -25,25 +25,28 @@ double dashpot_time(double value, bool is_time, double k, double mobility) {
 Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest,
                                     double plateau) {
   if (!(stiffness > 0 && pressed > 0)) return {.rate = rate, .pressed = pressed};
-  const double power = std::clamp(stiffness * deepest / pressed, 1., 2.);
-  const double level = plateau * (2 / power - 1);
-  const double least = level < 1 ? 2 * (1 / power - level) / (1 - level) - 1 : 1;
-  return {rate, pressed, power * pressed / stiffness, power, level, std::clamp(least, 0., 1.)};
+  const double mean = pressed / stiffness;
+  const double power = std::clamp(deepest / mean, 1., 2.);
+  const double flat = 2 / power - 1;  // least depth of points without a plateau
+  const double level = plateau * flat;
+  const double least = level > 0 && level < 1 ? (flat - level) / (1 - level) : flat;
+  return {rate, pressed, power * mean, power, level, least};
 }
 
 // With the largest depth D = pN/K, the coefficient c, and s = c u/(p N) for the rate u at which the
 // sides part, points that are less deep than s D have no pressure. So the force is -c u = -p N s up
-// to s = `least`, and from there to s = 1 it is -N (1 - p y (level + even y)) with y = 1 - s. The
-// rate depends on the force: with `kept`, this makes a quadratic equation for y.
+// to s = `least`, and from there to s = 1 it is -N [1 - 2 a p level z - a (p (1 - level) z)^2] with
+// a = p - 1 and z = (1 - s)/(2 a). The rate depends on the force: with `kept`, this makes a
+// quadratic equation for z.
 double Dashpot::Normal::push(double free, double elastic, double kept) const {
   if (free >= -power * least * elastic) return free;
-  const double more = elastic * (kept + power * (1 - kept)) + free;
-  if (!(more > 0)) return -elastic;
-  const double even = least < 1 ? (1 - level) / (2 * (1 - least)) : 0;
-  const double linear = power * (kept * level + (1 - kept)), most = more / elastic;
-  const double y =
-      2 * most / (linear + std::sqrt(linear * linear + 4 * kept * power * even * most));
-  return -elastic * (1 - power * y * (level + even * y));
+  const double more = elastic * (kept + power * (1 - kept)) + free, a = power - 1;
+  if (!(a > 0 && more > 0)) return -elastic;
+  const double even = power * (1 - level);
+  const double linear = a * elastic * power * (kept * level + (1 - kept));
+  const double z =
+      more / (linear + std::sqrt(linear * linear + a * kept * even * even * elastic * more));
+  return -elastic * (1 - a * z * (2 * power * level + even * even * z));
 }
 
 void Dashpots::clear() {
@@ -276,7 +279,8 @@ double Dashpots::relax(size_t i, double dt) {
   };
   const auto push = [&](size_t k, double behind) {
     const Dashpot::Normal& across = dashpot.across[k];
-    set(k, across.push(free(k, behind), across.pressed * dt, solved.along[k].kept));
+    const double pull = free(k, behind);
+    set(k, pull < 0 ? across.push(pull, across.pressed * dt, solved.along[k].kept) : pull);
   };
   push(0, rate[0]);
   push(1, rate[1] + solved.d01 * change[0]);
