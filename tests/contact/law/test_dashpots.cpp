@@ -252,7 +252,7 @@ TEST_CASE("dashpots at corners and at flats that part take energy", "[damping]")
 TEST_CASE("dashpots have the same bits for any number of threads", "[damping][threads]") {
   // So many that several threads share most layers. Node 0 does not move.
   SeededRandom random(29);
-  const int nodes = kSanitized ? 2000 : 6000, contacts = 6 * nodes;
+  constexpr int nodes = 20000, contacts = 3 * nodes;
   std::vector<double> inverse_mass, velocity, force;
   for (int i = 0; i < nodes; ++i) {
     const double w = i == 0 ? 0 : std::pow(10, random.uniform(-1, 1));
@@ -276,12 +276,15 @@ TEST_CASE("dashpots have the same bits for any number of threads", "[damping][th
     }
   }
   for (Dashpots& dashpots : all) dashpots.solve({inverse_mass, velocity, force, force, {}}, .1);
+  int different = 0;
   for (size_t i = 0; i < all[0].size(); ++i) {
     for (const Dashpots& other : all) {
-      REQUIRE(other.normal_force(i) == all[0].normal_force(i));
-      REQUIRE(other.tangential_force(i) == all[0].tangential_force(i));
+      different += other.normal_force(i) != all[0].normal_force(i);
+      different += other.tangential_force(i) != all[0].tangential_force(i);
     }
   }
+  CHECK(all[0].size() == static_cast<size_t>(contacts));
+  CHECK(different == 0);
 }
 
 TEST_CASE("chains of masses with dashpots of any strength do not grow", "[damping]") {
