@@ -252,7 +252,7 @@ TEST_CASE("dashpots at corners and at flats that part take energy", "[damping]")
 TEST_CASE("dashpots have the same bits for any number of threads", "[damping][threads]") {
   // So many that several threads share most layers. Node 0 does not move.
   SeededRandom random(29);
-  constexpr int nodes = 20000, contacts = 3 * nodes;
+  constexpr int nodes = 12000, contacts = 2 * nodes;
   std::vector<double> inverse_mass, velocity, force;
   for (int i = 0; i < nodes; ++i) {
     const double w = i == 0 ? 0 : std::pow(10, random.uniform(-1, 1));
