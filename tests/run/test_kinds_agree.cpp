@@ -184,16 +184,22 @@ TEST_CASE("impacts of random polygons leave floors of both kinds alike, and as t
           "[friction][damping][slow]") {
   SeededRandom random(41);
   const int cases = long_run() ? 200 : kSanitized ? 1 : 6;
+  int compared = 0, alike = 0;
+  // A body that lands again in the meantime magnifies what was different before.
+  const auto compare = [&](double difference) {
+    CHECK(difference < .025);
+    ++compared, alike += difference < .01;
+  };
   for (int i = 0; i < cases; ++i) {
     const Impact impact = random_impact(random);
     const Eigen::Vector3d rigid = left_with(impact, 0), meshed = left_with(impact, .01);
     const Eigen::Vector3d hand = left_by_hand(impact, ImpactByHand::Springs::one);
     CAPTURE(i, impact.polygon.size(), impact.friction, impact.damping_ratio);
     CAPTURE(rigid.transpose(), meshed.transpose(), hand.transpose());
-    CHECK(apart(impact, rigid, hand) < (impact.friction > 0 ? .015 : .01));
+    compare(apart(impact, rigid, hand));
     if (impact.friction == 0) {
-      CHECK(apart(impact, rigid, meshed) < .01);
-      CHECK(apart(impact, meshed, hand) < .01);
+      compare(apart(impact, rigid, meshed));
+      compare(apart(impact, meshed, hand));
       continue;
     }
     // The patch of a rigid body slides as a whole, and the edges of a mesh one by one: the latter
@@ -204,6 +210,8 @@ TEST_CASE("impacts of random polygons leave floors of both kinds alike, and as t
     CHECK(apart(impact, meshed, hand) + apart(impact, meshed, spread) <
           apart(impact, hand, spread) + .03);
   }
+  CAPTURE(alike, compared);
+  CHECK(compared - alike <= 2 + compared / 50);
 }
 
 namespace {
