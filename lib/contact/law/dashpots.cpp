@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace apothem {
 namespace {
 
 constexpr int kMostPasses = 100;
-constexpr double kRelaxTime = 30;  // ns
-constexpr double kAgree = 1e-6;    // tolerance relative to the largest impulse, or to the elastic
-                                   // normal impulse of the step
+constexpr double kRelaxTime = 30;           // ns
+constexpr std::uint32_t kUsualLayers = 16;  // in piles of polygons
+constexpr double kAgree = 1e-6;  // tolerance relative to the largest impulse, or to the elastic
+                                 // normal impulse of the step
 
 }  // namespace
 
@@ -231,11 +233,17 @@ void Dashpots::find_gains() {
 
 // The dashpots of contacts that share no body do not depend on each other. Each contact gets a
 // layer above those of the contacts before it that share a body with it. Layer by layer the result
-// is the same to the last bit as contact by contact, but threads can share the work, and a
-// processor need not wait for one contact before it begins with the next one.
+// is the same to the last bit as contact by contact, but threads can share the work. Where that
+// does not pay, all contacts are one layer, in their order.
 void Dashpots::find_order() {
   layer_of_.resize(dashpots_.size()), order_.resize(dashpots_.size());
   ends_.clear();
+  const auto all = static_cast<std::uint32_t>(dashpots_.size());
+  if (!threads_.worth(static_cast<int>(all / kUsualLayers), kRelaxTime)) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    ends_.push_back(all);
+    return;
+  }
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     std::uint32_t layer = 0;
     for (const Entry& e : entries(i)) {
@@ -284,9 +292,10 @@ double Dashpots::relax(size_t i, double dt) {
   };
   push(0, rate[0]);
   push(1, rate[1] + solved.d01 * change[0]);
-  const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
-                         solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = dashpot.limit(pressed / dt, solved.slip) * dt, spring = dashpot.spring * dt;
+  const double per_dt = 1 / dt;
+  const double pressed = dashpot.across[0].pressed + dashpot.across[1].pressed +
+                         (solved.along[0].impulse + solved.along[1].impulse) * per_dt;
+  const double limit = dashpot.limit(pressed, solved.slip) * dt, spring = dashpot.spring * dt;
   const double behind = rate[2] + solved.d02 * change[0] + solved.d12 * change[1];
   set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
   for (const Entry& e : all) {
@@ -300,14 +309,16 @@ double Dashpots::relax(size_t i, double dt) {
 
 Dashpots::Pass Dashpots::relax_all(bool forwards, double dt) {
   for (Pass& worker : workers_) worker = {};
-  for (size_t k = 0; k < ends_.size(); ++k) {
-    const size_t layer = forwards ? k : ends_.size() - 1 - k;
-    const std::uint32_t begin = layer == 0 ? 0 : ends_[layer - 1];
-    threads_.chunks(static_cast<int>(ends_[layer] - begin), kRelaxTime,
+  for (size_t nth = 0; nth < ends_.size(); ++nth) {
+    const size_t layer = forwards ? nth : ends_.size() - 1 - nth;
+    const std::uint32_t begin = layer == 0 ? 0 : ends_[layer - 1], last = ends_[layer] - 1;
+    const double each = ends_.size() > 1 ? kRelaxTime : 0;  // a layer of all is not divided
+    threads_.chunks(static_cast<int>(ends_[layer] - begin), each,
                     [&](int first, int end, int number) {
                       Pass pass;
                       for (int n = first; n < end; ++n) {
-                        const size_t i = order_[begin + static_cast<size_t>(n)];
+                        const auto k = static_cast<std::uint32_t>(n);
+                        const size_t i = order_[forwards ? begin + k : last - k];
                         const double change = relax(i, dt);
                         const std::array<Along, 3>& along = solved_[i].along;
                         pass.add({change, std::abs(along[0].impulse + along[1].impulse)});
