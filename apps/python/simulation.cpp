@@ -5,7 +5,7 @@
 
 #include "apps/python/views.hpp"
 #include "lib/model/columns.hpp"
-#include "lib/output/patch_quantities.hpp"
+#include "lib/model/patch_quantities.hpp"
 #include "lib/run/hash.hpp"
 
 namespace apothem::python {

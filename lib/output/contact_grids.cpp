@@ -5,7 +5,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include "lib/output/patch_quantities.hpp"
+#include "lib/model/patch_quantities.hpp"
 
 namespace apothem {
 
