@@ -1,37 +1,52 @@
 // apothem.Simulation: a scene that runs.
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "apps/python/views.hpp"
 #include "lib/model/columns.hpp"
+#include "lib/model/patch_quantities.hpp"
 #include "lib/run/hash.hpp"
 
 namespace apothem::python {
 namespace {
 
-// A row of Simulation.contacts().
-struct ContactRow {
-  std::int64_t body_a, body_b;
-  double point[2], normal[2], tangential[2], damping[2];
-  double penetration, phi;
-};
-
-void copy(const Vec2& from, double (&to)[2]) { to[0] = from.x(), to[1] = from.y(); }
-
-py::array_t<ContactRow> contacts(const Driver& driver) {
+// Two numbers of bodies, the loading point, and the quantities that Python has.
+py::array contacts(const Driver& driver) {
+  py::list names, formats, offsets;
+  size_t size = 0;
+  const auto add_field = [&](const char* name, const char* format, size_t bytes) {
+    names.append(name), formats.append(format), offsets.append(size);
+    size += bytes;
+  };
+  const auto add_vector = [&](const char* name) { add_field(name, "(2,)f8", 2 * sizeof(double)); };
+  add_field("body_a", "i8", sizeof(std::int64_t));
+  add_field("body_b", "i8", sizeof(std::int64_t));
+  add_vector("point");
+  for (const PatchQuantity& quantity : kPatchQuantities) {
+    if (!quantity.in_python) continue;
+    if (quantity.is_vector) {
+      add_vector(quantity.in_python);
+    } else {
+      add_field(quantity.in_python, "f8", sizeof(double));
+    }
+  }
   const std::vector<ContactRecord> records = driver.look().simulation().contacts();
-  py::array_t<ContactRow> array(static_cast<py::ssize_t>(records.size()));
-  ContactRow* row = array.mutable_data();
+  py::array array(py::dtype(names, formats, offsets, static_cast<py::ssize_t>(size)),
+                  static_cast<py::ssize_t>(records.size()));
+  auto* next = static_cast<char*>(array.mutable_data());
+  const auto put = [&](const void* from, size_t bytes) {
+    std::memcpy(next, from, bytes);
+    next += bytes;
+  };
   for (const ContactRecord& record : records) {
-    row->body_a = record.a;
-    row->body_b = record.b;
-    copy(record.point, row->point);
-    copy(record.normal, row->normal);
-    copy(record.tangential, row->tangential);
-    copy(record.damping, row->damping);
-    row->penetration = record.penetration;
-    row->phi = record.phi;
-    ++row;
+    for (const std::int64_t body : {record.a, record.b}) put(&body, sizeof body);
+    put(record.point.data(), 2 * sizeof(double));
+    for (const PatchQuantity& quantity : kPatchQuantities) {
+      if (!quantity.in_python) continue;
+      const Vec2 value = quantity.value(record);
+      put(value.data(), (quantity.is_vector ? 2 : 1) * sizeof(double));
+    }
   }
   return array;
 }
@@ -247,8 +262,6 @@ px_error, py_error, angular_error, the parts that no impulse accounts for.)")
 }  // namespace
 
 void bind_simulation(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(ContactRow, body_a, body_b, point, normal, tangential, damping, penetration,
-                       phi);
   py::class_<Driver, std::shared_ptr<Driver>> type(module, "Simulation", kSimulation,
                                                    py::custom_type_setup(support_collector));
   type.def(py::init(&make), py::arg("scene"), py::arg("output") = py::none(),

@@ -5,31 +5,9 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include <array>
+#include "lib/model/patch_quantities.hpp"
 
 namespace apothem {
-namespace {
-
-// A quantity of a contact patch in the frames. Scalars stand in x.
-struct PatchQuantity {
-  const char* name;
-  bool is_vector;
-  Vec2 (*value)(const ContactRecord&);
-};
-constexpr std::array kPatchQuantities{
-    PatchQuantity{
-        "force_on_a", true,
-        [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping + c.tangential; }},
-    PatchQuantity{"normal_force_on_a", true,
-                  [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping; }},
-    PatchQuantity{"damping_force_on_a", true, [](const ContactRecord& c) { return c.damping; }},
-    PatchQuantity{"tangential_force_on_a", true,
-                  [](const ContactRecord& c) { return c.tangential; }},
-    PatchQuantity{"penetration", false,
-                  [](const ContactRecord& c) { return Vec2(c.penetration, 0); }},
-    PatchQuantity{"phi", false, [](const ContactRecord& c) { return Vec2(c.phi, 0); }}};
-
-}  // namespace
 
 vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
                                             const std::vector<ContactRecord>& contacts) {
@@ -48,7 +26,8 @@ vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
   grid->GetPointData()->AddArray(a);
   grid->GetPointData()->AddArray(b);
   for (const PatchQuantity& quantity : kPatchQuantities) {
-    vtkNew<vtkDoubleArray> values = doubles(quantity.name, quantity.is_vector ? 3 : 1);
+    if (!quantity.in_frames) continue;
+    vtkNew<vtkDoubleArray> values = doubles(quantity.in_frames, quantity.is_vector ? 3 : 1);
     for (const ContactRecord& contact : contacts) {
       const Vec2 value = quantity.value(contact);
       if (quantity.is_vector) {

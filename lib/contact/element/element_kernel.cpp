@@ -161,7 +161,7 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back({a, b, force, point, offset, k * pair.weight});
+  touches_.push_back({a, b, force, point, offset, k * pair.weight, pair.depth});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& place) {
     find_corners(i, place, of_a_);
     distribute(of_a_, f, normal_);
@@ -230,11 +230,12 @@ double ElementKernel::update_friction(const Kinematics& now, double dt, Friction
     const double constant = law.friction.tangential_stiffness * thickness_;
     t.spring_stiffness = constant > 0 ? constant : law.friction.stiffness_ratio * t.stiffness;
     const double pressed = t.force.norm() + old.push;
+    const double slip = rate.dot(tangent);
     const CoulombSpring<double> spring{
         t.spring_stiffness,
-        now.restored ? HUGE_VAL : friction_limit(law.friction.coefficient, pressed)};
+        now.restored ? HUGE_VAL : FrictionLimit<double>::of(law)(pressed, slip)};
     const double kept = old.stiffness > 0 ? std::min(1., spring.stiffness / old.stiffness) : 0;
-    t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
+    t.spring = spring.after(kept * old.force, slip * dt);
     memory.keep({key, t.spring, spring.stiffness, tangent, old.push});
     t.friction = t.spring * tangent;
     const auto add_friction = [&](SurfaceIndex i, const Vec2& f, const Vec2& point,
@@ -292,12 +293,12 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& dashpots) {
         {body_a,
          body_b,
          normal,
-         {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction), size,
-                          size / t.stiffness}},
+         {Dashpot::Normal::of(t.stiffness * time(law.damping.normal, pair.resistance, direction),
+                              size, t.stiffness, t.depth)},
          t.spring_stiffness *
              time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
          t.spring,
-         law.friction.coefficient});
+         FrictionLimit<double>::of(law)});
     const auto add_side = [&](SurfaceIndex i, const Vec2& point, double sign) {
       if (surfaces_.is_rigid(i)) return dashpots.add_point(i, point, sign * normal, sign * across);
       find_corners(i, point, of_a_);

@@ -61,6 +61,7 @@ class ElementKernel final : public Kernel {
     Vec2 point;            ///< action point relative to a's reference point, m
     Vec2 offset;           ///< a's reference point minus b's, m
     double pressure;       ///< sum of the magnitudes of the pressures that the force consists of, N
+    double depth;          ///< see PairIntegral, m
     double stiffness = 0;  ///< stiffness along the force, N/m
     double spring = 0, spring_stiffness = 0;  ///< friction spring: force, N, and stiffness, N/m
     Vec2 friction = Vec2::Zero();             ///< friction on a, N

@@ -1,20 +1,39 @@
-// The friction spring, as formulas for numbers and for packs of numbers (the paper, Eqs. 12 and
-// 14).
+// The law of friction and its spring, as formulas for numbers and for packs of numbers (the paper,
+// Eqs. 12 and 14).
 #pragma once
 
 #include <cmath>
 
+#include "lib/contact/law/law.hpp"
 #include "lib/execution/pack.hpp"
 
 namespace apothem {
 
-/// The largest friction force, N, for the normal force `pressed`, N: Coulomb's law (the paper, Eq.
-/// 14). It serves every kind of surface, and the dashpot beside the spring. Another friction law
-/// starts here.
+/// The largest friction force: Coulomb's law (the paper, Eq. 14). It serves every kind of surface,
+/// and the dashpot beside the spring. Another friction law is written here, with its parameters.
 template <class Real>
-APOTHEM_INLINE Real friction_limit(const Real& coefficient, const Real& pressed) {
-  return coefficient * select(pressed > Real(0.), pressed, Real(0.));
-}
+struct FrictionLimit {
+  Real coefficient = Real(0.);
+
+  /// Calls f(parameter, value) for each parameter, where value(law) is that of a pair of bodies.
+  template <class F>
+  APOTHEM_INLINE void each_parameter(const F& f) {
+    f(coefficient, [](const PairLaw& law) APOTHEM_LAMBDA { return law.friction.coefficient; });
+  }
+  [[nodiscard]] static FrictionLimit of(const PairLaw& law) {
+    FrictionLimit limit;
+    limit.each_parameter([&](Real& parameter, const auto& value) { parameter = Real(value(law)); });
+    return limit;
+  }
+  /// A limit that no spring reaches.
+  [[nodiscard]] static FrictionLimit infinite() { return {Real(1e30)}; }
+
+  /// The largest force, N, for the normal force `pressed`, N, while the sides slip with the rate
+  /// given last, m/s, on which Coulomb's law does not depend.
+  [[nodiscard]] APOTHEM_INLINE Real operator()(const Real& pressed, const Real& /*slip*/) const {
+    return coefficient * select(pressed > Real(0.), pressed, Real(0.));
+  }
+};
 
 /// A spring along the tangent of a contact whose force never exceeds Coulomb's limit.
 template <class Real>

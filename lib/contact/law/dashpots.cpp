@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "lib/contact/law/coulomb_spring.hpp"
+#include <numeric>
+#include <utility>
 
 namespace apothem {
 namespace {
 
-constexpr int kMostSweeps = 50;
+constexpr int kMostPasses = 100;
+constexpr double kRelaxTime = 30;           // ns
+constexpr std::uint32_t kUsualLayers = 16;  // in piles of polygons
 constexpr double kAgree = 1e-6;  // tolerance relative to the largest impulse, or to the elastic
                                  // normal impulse of the step
 
@@ -21,12 +23,32 @@ double dashpot_time(double value, bool is_time, double k, double mobility) {
 }
 
 // If the force rises with the power p of the depth, the stiffness is p times the force over the
-// depth, and the damping coefficient rises with the square root of the stiffness. p is 1 for flat
-// faces and 2 at a corner.
-Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest) {
-  if (!(stiffness > 0 && pressed > 0)) return {rate, pressed, 0, 1};
-  const double power = std::clamp(stiffness * deepest / pressed, 1., 2.);
-  return {rate, pressed, power * pressed / stiffness, 2 / (power + 1)};
+// depth. p is 1 for flat faces and 2 at a corner.
+Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest,
+                                    double plateau) {
+  if (!(stiffness > 0 && pressed > 0)) return {.rate = rate, .pressed = pressed};
+  const double mean = pressed / stiffness;
+  const double power = std::clamp(deepest / mean, 1., 2.);
+  const double flat = 2 / power - 1;  // least depth of points without a plateau
+  const double level = plateau * flat;
+  const double least = level > 0 && level < 1 ? (flat - level) / (1 - level) : flat;
+  return {rate, pressed, power * mean, power, level, least};
+}
+
+// With the largest depth D = pN/K, the coefficient c, and s = c u/(p N) for the rate u at which the
+// sides part, points that are less deep than s D have no pressure. So the force is -c u = -p N s up
+// to s = `least`, and from there to s = 1 it is -N [1 - 2 a p level z - a (p (1 - level) z)^2] with
+// a = p - 1 and z = (1 - s)/(2 a). The rate depends on the force: with `kept`, this makes a
+// quadratic equation for z.
+double Dashpot::Normal::push(double free, double elastic, double kept) const {
+  if (free >= -power * least * elastic) return free;
+  const double more = elastic * (kept + power * (1 - kept)) + free, a = power - 1;
+  if (!(a > 0 && more > 0)) return -elastic;
+  const double even = power * (1 - level);
+  const double linear = a * elastic * power * (kept * level + (1 - kept));
+  const double z =
+      more / (linear + std::sqrt(linear * linear + a * kept * even * even * elastic * more));
+  return -elastic * (1 - a * z * (2 * power * level + even * even * z));
 }
 
 void Dashpots::clear() {
@@ -140,7 +162,7 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
     const size_t c = moved.coordinate;
     const double w = motion.inverse_mass[c], g = motion.weight.empty() ? 0 : motion.weight[c];
     moved.kick = dt / 2 * w * (motion.before[c] + motion.after[c] + 2 * g);
-    moved.reach = moved.force = 0;
+    moved.reach = moved.force = 0, moved.layer = 0;
     moving_[i].inverse_mass = w;
   }
   for (const Motion::Rail& rail : motion.rails) put_on(rail);
@@ -151,7 +173,7 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
 
 // A dashpot acts for half of the last drift and half of the next one. If the contact began within
 // the last drift, or will end within the next one, it acts only for as long as the contact is
-// closed.
+// closed, with the mean of the coefficient, which rises with the square root of the stiffness.
 void Dashpots::find_rates(double dt) {
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     const Dashpot& dashpot = dashpots_[i];
@@ -165,7 +187,8 @@ void Dashpots::find_rates(double dt) {
       }
     }
     const auto closed_fraction = [&](double approach, const Dashpot::Normal& normal) {
-      return approach * dt > normal.depth ? normal.mean * normal.depth / (approach * dt) : .5;
+      if (!(approach * dt > normal.depth)) return .5;
+      return 2 / (normal.power + 1) * normal.depth / (approach * dt);
     };
     double fraction = 0;  // larger fraction of the step for which one end of the contact is closed
     for (size_t k = 0; k < 2; ++k) {
@@ -176,6 +199,7 @@ void Dashpots::find_rates(double dt) {
       solved.along[k] = {0, across.rate * both * dt, before[k]};
     }
     solved.along[2] = {0, dashpot.tangential_rate * fraction * dt, before[2]};
+    solved.slip = before[2];
     for (const Entry& e : entries(i)) {
       double& reach = moved_[e.moved].reach;
       for (size_t k = 0; k < 3; ++k) reach += solved.along[k].gain * std::abs(e.part[k]);
@@ -207,37 +231,104 @@ void Dashpots::find_gains() {
   }
 }
 
+// The dashpots of contacts that share no body do not depend on each other. Each contact gets a
+// layer above those of the contacts before it that share a body with it. Layer by layer the result
+// is the same to the last bit as contact by contact, but threads can share the work. Where that
+// does not pay, all contacts are one layer, in their order.
+void Dashpots::find_order() {
+  layer_of_.resize(dashpots_.size()), order_.resize(dashpots_.size());
+  ends_.clear();
+  const auto all = static_cast<std::uint32_t>(dashpots_.size());
+  if (!threads_.worth(static_cast<int>(all / kUsualLayers), kRelaxTime)) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    ends_.push_back(all);
+    return;
+  }
+  for (size_t i = 0; i < dashpots_.size(); ++i) {
+    std::uint32_t layer = 0;
+    for (const Entry& e : entries(i)) {
+      if (moving_[e.moved].inverse_mass > 0) layer = std::max(layer, moved_[e.moved].layer);
+    }
+    for (const Entry& e : entries(i)) moved_[e.moved].layer = layer + 1;
+    layer_of_[i] = layer;
+    if (layer == ends_.size()) ends_.push_back(0);
+    ++ends_[layer];
+  }
+  std::uint32_t sum = 0;
+  for (std::uint32_t& end : ends_) sum += std::exchange(end, sum);  // now where each one begins
+  for (size_t i = 0; i < dashpots_.size(); ++i) {
+    order_[ends_[layer_of_[i]]++] = static_cast<std::uint32_t>(i);
+  }
+}
+
 // Solves for the dashpots of one contact with all others fixed. Returns the largest change of an
 // impulse, N s.
 double Dashpots::relax(size_t i, double dt) {
   const Dashpot& dashpot = dashpots_[i];
   Solved& solved = solved_[i];
-  std::array<double, 3> rate{};
-  for (const Entry& e : entries(i)) {
+  // Two sums, each of every second entry, because an addition has to wait for the one before.
+  const std::span<const Entry> all = entries(i);
+  std::array<double, 3> rate{}, rest{};
+  const auto add = [&](const Entry& e, std::array<double, 3>& sum) {
     const double v = moving_[e.moved].velocity;
-    for (size_t k = 0; k < 3; ++k) rate[k] += e.part[k] * v;
-  }
-  std::array<double, 3> change;
-  const auto follow = [&](size_t k, double behind, double least, double most) {
-    Along& along = solved.along[k];
-    const double free = along.kept * along.impulse - along.gain * behind - along.offset;
-    const double next = std::clamp(free, least, most);
-    change[k] = next - along.impulse;
-    along.impulse = next;
+    for (size_t k = 0; k < 3; ++k) sum[k] += e.part[k] * v;
   };
-  follow(0, rate[0], -dashpot.across[0].pressed * dt, HUGE_VAL);
-  follow(1, rate[1] + solved.d01 * change[0], -dashpot.across[1].pressed * dt, HUGE_VAL);
-  const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
-                         solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = friction_limit(dashpot.coefficient, pressed), spring = dashpot.spring * dt;
-  follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
-         limit - spring);
-  for (const Entry& e : entries(i)) {
+  for (size_t e = 0; e + 1 < all.size(); e += 2) add(all[e], rate), add(all[e + 1], rest);
+  if (all.size() % 2 == 1) add(all.back(), rate);
+  for (size_t k = 0; k < 3; ++k) rate[k] += rest[k];
+  std::array<double, 3> change;
+  const auto free = [&](size_t k, double behind) {
+    const Along& along = solved.along[k];
+    return along.kept * along.impulse - along.gain * behind - along.offset;
+  };
+  const auto set = [&](size_t k, double impulse) {
+    change[k] = impulse - solved.along[k].impulse;
+    solved.along[k].impulse = impulse;
+  };
+  const auto push = [&](size_t k, double behind) {
+    const Dashpot::Normal& across = dashpot.across[k];
+    const double pull = free(k, behind);
+    set(k, pull < 0 ? across.push(pull, across.pressed * dt, solved.along[k].kept) : pull);
+  };
+  push(0, rate[0]);
+  push(1, rate[1] + solved.d01 * change[0]);
+  const double per_dt = 1 / dt;
+  const double pressed = dashpot.across[0].pressed + dashpot.across[1].pressed +
+                         (solved.along[0].impulse + solved.along[1].impulse) * per_dt;
+  const double limit = dashpot.limit(pressed, solved.slip) * dt, spring = dashpot.spring * dt;
+  const double behind = rate[2] + solved.d02 * change[0] + solved.d12 * change[1];
+  set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
+  for (const Entry& e : all) {
     Moving& moving = moving_[e.moved];
+    if (!(moving.inverse_mass > 0)) continue;  // other threads may read it
     moving.velocity += moving.inverse_mass *
                        (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
   }
   return std::max({std::abs(change[0]), std::abs(change[1]), std::abs(change[2])});
+}
+
+Dashpots::Pass Dashpots::relax_all(bool forwards, double dt) {
+  for (Pass& worker : workers_) worker = {};
+  for (size_t nth = 0; nth < ends_.size(); ++nth) {
+    const size_t layer = forwards ? nth : ends_.size() - 1 - nth;
+    const std::uint32_t begin = layer == 0 ? 0 : ends_[layer - 1], last = ends_[layer] - 1;
+    const double each = ends_.size() > 1 ? kRelaxTime : 0;  // a layer of all is not divided
+    threads_.chunks(static_cast<int>(ends_[layer] - begin), each,
+                    [&](int first, int end, int number) {
+                      Pass pass;
+                      for (int n = first; n < end; ++n) {
+                        const auto k = static_cast<std::uint32_t>(n);
+                        const size_t i = order_[forwards ? begin + k : last - k];
+                        const double change = relax(i, dt);
+                        const std::array<Along, 3>& along = solved_[i].along;
+                        pass.add({change, std::abs(along[0].impulse + along[1].impulse)});
+                      }
+                      workers_[static_cast<size_t>(number)].add(pass);
+                    });
+  }
+  Pass all;
+  for (const Pass& worker : workers_) all.add(worker);
+  return all;
 }
 
 void Dashpots::solve(const Motion& motion, double dt) {
@@ -245,19 +336,15 @@ void Dashpots::solve(const Motion& motion, double dt) {
   find_kicks(motion, dt);
   find_rates(dt);
   find_gains();
+  find_order();
   double pressed = 0;
   for (const Dashpot& dashpot : dashpots_) {
     pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);
   }
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    double change = 0, largest = pressed * dt;
-    for (size_t i = 0; i < dashpots_.size(); ++i) relax(i, dt);
-    for (size_t i = dashpots_.size(); i-- > 0;) {
-      change = std::max(change, relax(i, dt));
-      const std::array<Along, 3>& along = solved_[i].along;
-      largest = std::max(largest, std::abs(along[0].impulse + along[1].impulse));
-    }
-    if (change <= kAgree * largest) break;
+  // One pass is never enough: it leaves the order of the contacts in the result.
+  for (int k = 0; k < kMostPasses; ++k) {
+    const Pass pass = relax_all(k % 2 == 0, dt);
+    if (k > 0 && pass.change <= kAgree * std::max(pass.largest, pressed * dt)) break;
   }
   sum_forces(motion, dt);
 }

@@ -15,10 +15,13 @@
 // they agree. Energy is removed for any coefficient, step and masses, and for any number of sweeps,
 // so dashpots do not limit the step. g vanishes in rigid motion, so that momenta are conserved.
 //
-// A contact does not pull: J >= -N h along the normal, with the elastic force N. Along the tangent
-// the friction spring and the dashpot beside it together stay within Coulomb's limit.
+// A contact does not pull at any of its points. Those that are less deep than the time c/K times
+// the rate at which the sides part have no pressure, and the dashpot takes less there
+// (Normal::push). Along the tangent the friction spring and the dashpot beside it together stay
+// within Coulomb's limit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -26,7 +29,8 @@
 
 #include "geometry/polygon/point.hpp"
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/law.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
+#include "lib/execution/parallel.hpp"
 #include "lib/mesh/indices.hpp"
 
 namespace apothem {
@@ -41,15 +45,24 @@ struct Dashpot {
     double rate = 0;     ///< coefficient, N s/m
     double pressed = 0;  ///< elastic normal force at its point, N
     double depth = 0;    ///< depth over which this force has risen from zero, m
-    double mean = 1;     ///< mean of the coefficient over this depth, as a fraction of `rate`
-    /// The dashpot at a point with the contact stiffness `stiffness`, N/m. `deepest` is the depth
-    /// of the whole contact, m.
-    static Normal of(double rate, double pressed, double stiffness, double deepest);
+    double power = 1;    ///< power of the depth with which it has risen: 1 if flat, 2 at a corner
+    // The depths of its points: a part `level` of them has the depth above, and those of the others
+    // are spread evenly between this and the fraction `least` of it.
+    double level = 0, least = 1;
+    /// The dashpot of a part of a contact with the contact stiffness `stiffness`, N/m. `deepest` is
+    /// the largest depth of the part, m. If not all of its points are so deep, the fraction
+    /// `plateau` says how many are: none with 0, and with 1 as many as can be if the others begin
+    /// at the surface.
+    static Normal of(double rate, double pressed, double stiffness, double deepest,
+                     double plateau = 0);
+    /// The impulse, N s, if none of its points pulls. It is `free` if they could, and `elastic` is
+    /// that of `pressed`. `kept` is the fraction of an impulse on the dashpot that it takes back.
+    [[nodiscard]] double push(double free, double elastic, double kept) const;
   };
   std::array<Normal, 2> across;
   double tangential_rate = 0;  ///< coefficient along the tangent, N s/m
   double spring = 0;           ///< force of the friction spring, N
-  double coefficient = 0;      ///< coefficient of friction
+  FrictionLimit<double> limit = {};
 };
 
 /// The coefficient of a dashpot over the stiffness `k` (N/m) of the spring beside it, s. This is
@@ -81,7 +94,10 @@ class Dashpots {
     std::span<const Rail> rails = {};
   };
 
-  explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
+  explicit Dashpots(int rigid_bodies, int threads = 1)
+      : nodes_(3 * static_cast<size_t>(rigid_bodies)),
+        threads_(threads),
+        workers_(static_cast<size_t>(threads_.count())) {}
 
   /// Removes all contacts. Every step adds its contacts again, always in the same order.
   void clear();
@@ -135,6 +151,7 @@ class Dashpots {
     double kick = 0;        // change of velocity by all other forces over this step
     double reach = 0;       // impulse per velocity of all its dashpots together, N s/(m/s)
     double force = 0;
+    std::uint32_t layer = 0;  // layer after the last one of its dashpots, see find_order
 
     // The ledger needs these values of the step before.
     void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
@@ -160,24 +177,39 @@ class Dashpots {
     std::uint32_t first;               // index of its first entry
     std::array<Along, 3> along;        // along the normal at both points, and along the tangent
     double d01 = 0, d02 = 0, d12 = 0;  // change of one rate by an impulse along another one, 1/kg
+    double slip = 0;                   // rate along the tangent half a step before, m/s
   };
   std::uint32_t find(size_t first, size_t count);
   template <size_t count>
   void add(size_t first, const std::array<Parts, count>& parts);
   void put_on(const Motion::Rail& rail);
+  // The largest change and the largest normal impulse in a pass over contacts, N s.
+  struct Pass {
+    double change = 0, largest = 0;
+    void add(const Pass& other) {
+      change = std::max(change, other.change), largest = std::max(largest, other.largest);
+    }
+  };
   [[nodiscard]] std::span<const Entry> entries(size_t i) const;
   void find_kicks(const Motion& motion, double dt);
   void find_rates(double dt);
   void find_gains();
+  void find_order();
   double relax(size_t i, double dt);
+  Pass relax_all(bool forwards, double dt);
   void sum_forces(const Motion& motion, double dt);
 
   size_t nodes_;  // the first coordinate of a node
+  Threads threads_;
+  std::vector<Pass> workers_;
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
   std::vector<Moved> moved_;             // coordinates in the order in which they were first added
   std::vector<Moving> moving_;           // the same coordinates while solving
+  std::vector<std::uint32_t> order_;     // the contacts in the order of their layers
+  std::vector<std::uint32_t> layer_of_;  // layer of each contact
+  std::vector<std::uint32_t> ends_;      // end of each layer in order_
   std::vector<std::uint32_t> index_;     // index of every coordinate in moved_, or kNone
   std::vector<Entry> across_rails_;      // parts of entries across the rails of bodies
   std::vector<std::uint32_t> of_these_;  // the contact of each of these parts

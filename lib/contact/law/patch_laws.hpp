@@ -40,7 +40,8 @@ struct PatchStep {
   PairVectorOf<Real> rate;  // velocities of the bodies, half a step before the end of the step
   Truth<Real> begins;       // true if the pair had no patch in the step before
   // The contact law. Stiffnesses are multiplied by the thickness, N/m.
-  Real normal_stiffness, coefficient;
+  Real normal_stiffness;
+  FrictionLimit<Real> limit;
   Real stiffness_ratio;  // stiffness of the friction spring over that of the contact, or 0
   Real constant;         // stiffness of the friction spring if the ratio is 0
   // The friction spring in the step before: its force, N, its stiffness, N/m, the normal force of
@@ -115,7 +116,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   const Real slip = select(noise, Real(0.), along);
   const Real normal = p.normal_stiffness * p.size + p.push;
   const CoulombSpring<Real> spring{select(p.has_direction, p.tangential_stiffness(), Real(0.)),
-                                   friction_limit(p.coefficient, normal)};
+                                   p.limit(normal, slip)};
   const Real& k = spring.stiffness;
   // The loading point moves. In the first half of the step the old friction force still acts at the
   // old point.

@@ -42,6 +42,9 @@ struct SpringContact {
   double followed = 0;    ///< the same times the part of the slip that it follows, N/m
   double friction = 0;    ///< force of the spring on the edge along (-ny, nx), N
   double drag = 0, push = 0;  ///< forces of the dashpots along the tangent and along the normal, N
+
+  /// The slip rate along (-ny, nx), m/s.
+  [[nodiscard]] double slip() const { return (nx * rate_y - ny * rate_x) / normal; }
 };
 
 class CommonNormals {

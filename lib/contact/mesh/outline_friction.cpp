@@ -140,14 +140,14 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
   for (size_t g = 0; g < groups.size(); ++g) {
     const EdgeFaceGroup& group = groups[g];
     SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-    const double coefficient =
-        step.blocks.laws()[static_cast<size_t>(group.law)].law->friction.coefficient;
+    const PairLaw& law = *step.blocks.laws()[static_cast<size_t>(group.law)].law;
     double pull = 0;
-    if (contact.normal > 0 && coefficient > 0) {
+    if (contact.normal > 0 && law.rough()) {
       const double pressed = contact.pressed + contact.push_before;
+      double slip = contact.slip();
       const CoulombSpring<double> spring{
-          contact.stiffness, step.limited ? friction_limit(coefficient, pressed) : HUGE_VAL};
-      double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
+          contact.stiffness,
+          step.limited ? FrictionLimit<double>::of(law)(pressed, slip) : HUGE_VAL};
       contact.followed = contact.stiffness;
       if (step.finite && !contact.is_old) {
         const double fraction = closed_fraction(step, unit, group, contact);
@@ -346,7 +346,7 @@ void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematic
                                        contact.resistance, contact.deepest)},
                   pair.tangential_time * contact.stiffness,
                   contact.friction,
-                  law.friction.coefficient});
+                  FrictionLimit<double>::of(law)});
     const OutlineSurfaces& o = outlines_;
     each_coordinate(blocks, unit, group, contact,
                     [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
@@ -395,7 +395,7 @@ void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_nod
       const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
       const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
       if (!law.rough() || !(contact.normal > 0)) continue;
-      const double limit = friction_limit(law.friction.coefficient, contact.pressed);
+      const double limit = FrictionLimit<double>::of(law)(contact.pressed, contact.slip());
       if (!tangent.friction_sticks() && is_sliding(contact.friction, limit)) continue;
       along.clear();
       each_coordinate(blocks, unit, groups[g], contact,

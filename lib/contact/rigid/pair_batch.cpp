@@ -64,7 +64,7 @@ APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<R
          [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.stiffness_ratio; });
   number(p.constant, [&](const PairLaw& l)
                          APOTHEM_LAMBDA { return l.friction.tangential_stiffness * thickness; });
-  number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
+  p.limit.each_parameter(number);
 }
 
 // Reads the integrals of a pair and the positions of its bodies, which its load needs.
@@ -206,7 +206,7 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
   if (law.rough()) {
     dashpot.tangential_rate = rate(law.damping.tangential, p.tangential_stiffness(), across);
     dashpot.spring = spring;
-    dashpot.coefficient = law.friction.coefficient;
+    dashpot.limit = FrictionLimit<double>::of(law);
   }
   // The strip of the contact is represented by two dashpots that resist its rotation as a uniformly
   // distributed one does.
@@ -215,10 +215,17 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
   const double weight = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
   const std::array<double, 2> along{both ? -off - apart : 0, both ? apart - off : 0};
   const std::array<double, 2> weights{1 - weight, weight};
+  // The mean depths of both halves say how much deeper it gets from one end to the other one. What
+  // the largest depth has beyond is because the boundary rises towards both ends.
+  const double mean = pressed / stiffness;
+  const double spread = both ? std::sqrt(3.) / 2 * mean * std::abs(weights[1] - weights[0]) : 0;
+  const double arch = std::max(0., patch.depth - mean - 2 * spread);
+  const double plateau = arch > 0 ? arch / (arch + spread) : 0;
   for (const size_t k : {0, 1}) {
     const double part = both ? .5 : weights[k];  // fraction of the stiffness
+    const double own = both ? 2 * weights[k] * mean : mean;
     dashpot.across[k] = Dashpot::Normal::of(part * normal_rate, weights[k] * pressed,
-                                            part * stiffness, patch.depth);
+                                            part * stiffness, own + spread + arch, plateau);
   }
   dashpots.add(dashpot);
   dashpots.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);

@@ -8,8 +8,6 @@
 namespace apothem {
 namespace {
 
-constexpr double kNeverSlides = 1e30;  // coefficient of friction
-
 PatchStep<Moving> step_of(const Surfaces& surfaces, double thickness, const PairLaw& law,
                           RigidIndex a, RigidIndex b, const MovingIntegral& patch) {
   PatchStep<Moving> p;
@@ -24,7 +22,7 @@ PatchStep<Moving> step_of(const Surfaces& surfaces, double thickness, const Pair
   p.growth =
       growth_of<Moving>(patch.breadth, patch.own_length_a, slope_a, patch.own_length_b, slope_b);
   p.normal_stiffness = law.normal_stiffness * thickness;
-  p.coefficient = law.friction.coefficient;
+  p.limit = FrictionLimit<Moving>::of(law);
   p.stiffness_ratio = law.friction.stiffness_ratio;
   p.constant = law.friction.tangential_stiffness * thickness;
   p.find_direction();
@@ -39,7 +37,7 @@ void set_memory(const TriedFriction& friction, PatchStep<Moving>& p) {
   p.rate.x.d.v[0] = p.rate.y.d.v[1] = p.rate.a.d.v[2] = p.rate.b.d.v[3] = 1 / dt;
   p.force_error = 0;
   if (friction.sticks) {
-    p.coefficient = Moving(kNeverSlides);
+    p.limit = FrictionLimit<Moving>::infinite();
     // Where nothing moves, the slip is zero, but its derivatives count: no slip is noise.
     p.force_error = std::numeric_limits<double>::quiet_NaN();
   }
@@ -54,9 +52,9 @@ void set_memory(const TriedFriction& friction, PatchStep<Moving>& p) {
   }
   // The spring before is one that the slip brings to its present force, or beyond the limit.
   const double k = p.tangential_stiffness().v;
-  const double slip = p.slip(p.rate).dot(p.normal.turned()).v;
-  const double limit = friction_limit(p.coefficient.v, (p.normal_stiffness * p.size).v);
-  double force = friction.now.force + k * slip * closed_fraction(p, dt).v * dt;
+  const Moving slip = p.slip(p.rate).dot(p.normal.turned());
+  const double limit = p.limit(p.normal_stiffness * p.size, slip).v;
+  double force = friction.now.force + k * slip.v * closed_fraction(p, dt).v * dt;
   if (is_sliding(friction.now.force, limit)) force += friction.now.force;
   p.spring = force;
   p.stiffness_before = k;

@@ -330,6 +330,7 @@ void PatchTangential::Range::per_edge(const PairWork& pair,
   const PairRate& rate = sum.rate;
   const double stiffness = pair.law->one_stiffness() * all_.thickness_;
   const double normal_stiffness = pair.law->normal_stiffness * all_.thickness_;
+  const FrictionLimit<double> limit = FrictionLimit<double>::of(*pair.law);
   const int edges_of_a = all_.surfaces_.shapes().view(pair.a).size;
   auto next = now_.begin();
   auto old = before_.begin();
@@ -344,10 +345,9 @@ void PatchTangential::Range::per_edge(const PairWork& pair,
     const Vec2 tangent = tangent_of(segment.force);
     const Vec2 behind = segment.centre + between;
     const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, segment.centre) - cross(rate.b, behind);
-    const double force = follow(
-        {stiffness,
-         friction_limit(pair.law->friction.coefficient, normal_stiffness * segment.force.norm())},
-        before, slip.dot(tangent) * all_.scene_.dt, *pair.ledger);
+    const double along = slip.dot(tangent);
+    const double force = follow({stiffness, limit(normal_stiffness * segment.force.norm(), along)},
+                                before, along * all_.scene_.dt, *pair.ledger);
     const double arm_a = cross(segment.centre, tangent), arm_b = cross(behind, tangent);
     *next = {.key = key,
              .force = force,

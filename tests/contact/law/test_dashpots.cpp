@@ -5,9 +5,10 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "apps/cases/samples.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
+using namespace apothem::test;
 
 namespace {
 
@@ -150,7 +151,7 @@ TEST_CASE("a contact does not pull, and friction with its dashpot obeys Coulomb"
   const std::vector<double> velocity{0, 5, 0, 0, 0};  // it leaves the node
   const double dt = .01;
   Dashpot contact{0, 1, Vec2(0, 1), {Dashpot::Normal{1e6, 30, 1e9}}, 1e6};
-  contact.coefficient = .4;
+  contact.limit.coefficient = .4;
   contact.spring = 5;
   dashpots.add(contact);
   dashpots.add_point(0, {0, -1}, {0, 1}, {-1, 0});
@@ -168,6 +169,122 @@ TEST_CASE("a contact does not pull, and friction with its dashpot obeys Coulomb"
   const std::vector<double> f = forces_of(dashpots, 5);
   CHECK(f[0] + f[3] == Approx(0).margin(1e-12));
   CHECK(f[1] + f[4] == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("a dashpot takes what its points take, none of which pulls", "[damping]") {
+  SeededRandom random(19);
+  for (int i = 0; i < scaled(400); ++i) {
+    // The dashpot moves a mass that it acts on, and its two sides part.
+    const double deepest = random.uniform(.1, 3), mean = deepest * random.uniform(.5, 1);
+    const double plateau = random.integer(0, 2) / 2. * random.uniform(0, 1);
+    const double stiffness = random.uniform(.1, 10), time = std::pow(10, random.uniform(-2, 1));
+    const double mobility = std::pow(10, random.uniform(-3, 2)), parts = random.uniform(-1, 6);
+    const double rate = stiffness * time, pressed = stiffness * mean;
+    const Dashpot::Normal dashpot = Dashpot::Normal::of(rate, pressed, stiffness, deepest, plateau);
+    CAPTURE(i, deepest, mean, plateau, stiffness, time, mobility, parts);
+    REQUIRE(dashpot.depth == Approx(deepest));
+    // Its points: some have the largest depth, those of the others are spread evenly.
+    constexpr int kPoints = 2000;
+    std::vector<double> depths;
+    double sum = 0;
+    for (int k = 0; k < kPoints; ++k) {
+      const double even = dashpot.least + (k + .5) / kPoints * (1 - dashpot.least);
+      depths.push_back(deepest * even);
+      sum += dashpot.level * deepest + (1 - dashpot.level) * depths.back();
+    }
+    CHECK(sum / kPoints == Approx(mean));
+    CHECK(dashpot.level <= plateau);
+    const auto by_points = [&](double u) {
+      double force = -dashpot.level * std::min(time * u, deepest);
+      for (const double depth : depths) {
+        force -= (1 - dashpot.level) / kPoints * std::min(time * u, depth);
+      }
+      return stiffness * force;
+    };
+    double low = -pressed, high = 2 * rate;
+    for (int n = 0; n < 50; ++n) {
+      const double middle = (low + high) / 2;
+      (by_points(parts + mobility * middle) > middle ? low : high) = middle;
+    }
+    const double part = 1 + rate * mobility;
+    CHECK(dashpot.push(-rate * parts / part, pressed, 1 - 1 / part) ==
+          Approx(low).margin(1e-5 * pressed));
+  }
+}
+
+TEST_CASE("dashpots at corners and at flats that part take energy", "[damping]") {
+  SeededRandom random(23);
+  for (int i = 0; i < scaled(2000); ++i) {
+    const Chain chain = random_chain(random);
+    std::vector<double> inverse_mass, velocity;
+    for (const double m : chain.mass) {
+      inverse_mass.insert(inverse_mass.end(), {1 / m, 1 / m});
+      velocity.insert(velocity.end(), {random.uniform(-1, 1), 0});
+    }
+    const std::vector<double> none(velocity.size()), weight;
+    const double dt = std::pow(10, random.uniform(-3, 1));
+    Dashpots dashpots(0);
+    for (Eigen::Index d = 0; d < chain.rates.size(); ++d) {
+      const double pressed = std::pow(10, random.uniform(-3, 1)) / dt;
+      dashpots.add({0,
+                    1,
+                    {1, 0},
+                    {Dashpot::Normal::of(chain.rates(d), pressed, pressed, random.uniform(1, 2),
+                                         random.uniform(0, 1))}});
+      for (size_t c = 0; c < chain.mass.size(); ++c) {
+        dashpots.add_node(static_cast<NodeIndex>(c),
+                          {chain.directions(d, static_cast<Eigen::Index>(c)), 0}, {0, 0});
+      }
+    }
+    dashpots.solve({inverse_mass, velocity, none, none, weight}, dt);
+    const std::vector<double> force = forces_of(dashpots, velocity.size());
+    double before = 0, behind = 0;
+    for (size_t c = 0; c < velocity.size(); ++c) {
+      const double next = velocity[c] + dt * inverse_mass[c] * force[c];
+      before += velocity[c] * velocity[c] / inverse_mass[c],
+          behind += next * next / inverse_mass[c];
+    }
+    CAPTURE(i, dt);
+    CHECK(behind < before * (1 + 1e-5));
+  }
+}
+
+TEST_CASE("dashpots have the same bits for any number of threads", "[damping][threads]") {
+  // So many that several threads share most layers. Node 0 does not move.
+  SeededRandom random(29);
+  constexpr int nodes = 12000, contacts = 2 * nodes;
+  std::vector<double> inverse_mass, velocity, force;
+  for (int i = 0; i < nodes; ++i) {
+    const double w = i == 0 ? 0 : std::pow(10, random.uniform(-1, 1));
+    inverse_mass.insert(inverse_mass.end(), {w, w});
+    velocity.insert(velocity.end(), {random.uniform(-1, 1), random.uniform(-1, 1)});
+    force.insert(force.end(), {random.uniform(-1, 1), random.uniform(-1, 1)});
+  }
+  std::vector<Dashpots> all;
+  for (const int threads : {1, 2, 5}) all.emplace_back(0, threads);
+  for (int i = 0; i < contacts; ++i) {
+    const double angle = random.uniform(-3, 3), stiffness = random.uniform(1, 10);
+    const Vec2 normal(std::cos(angle), std::sin(angle)), along(-normal.y(), normal.x());
+    Dashpot dashpot{0, 1, normal, {Dashpot::Normal::of(stiffness, 1, 1, random.uniform(1, 2))}, 1};
+    dashpot.limit.coefficient = .3;
+    const int a = random.integer(0, nodes - 1),
+              b = random.integer(0, 9) == 0 ? 0 : random.integer(1, nodes - 1);
+    for (Dashpots& dashpots : all) {
+      dashpots.add(dashpot);
+      dashpots.add_node(a, normal, along);
+      if (b != a) dashpots.add_node(b, -normal, -along);
+    }
+  }
+  for (Dashpots& dashpots : all) dashpots.solve({inverse_mass, velocity, force, force, {}}, .1);
+  int different = 0;
+  for (size_t i = 0; i < all[0].size(); ++i) {
+    for (const Dashpots& other : all) {
+      different += other.normal_force(i) != all[0].normal_force(i);
+      different += other.tangential_force(i) != all[0].tangential_force(i);
+    }
+  }
+  CHECK(all[0].size() == static_cast<size_t>(contacts));
+  CHECK(different == 0);
 }
 
 TEST_CASE("chains of masses with dashpots of any strength do not grow", "[damping]") {
