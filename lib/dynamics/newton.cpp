@@ -15,9 +15,9 @@
 namespace apothem {
 namespace {
 
-constexpr int kMostIterations = 30;   // for a share of a load step
-constexpr double kLeastShare = 1e-4;  // of a load step
-constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
+constexpr int kMostIterations = 30;       // for a share of a load step
+constexpr double kLeastLoadShare = 1e-4;  // of a load step
+constexpr double kFalling = 0.1;          // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
 constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalvings = 6,
               kMostShortened = 60, kMostShortenedNear = 25, kEasy = 4;
@@ -279,7 +279,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
     }
     state.x = path.x_done;
     path.step = (share - path.done) / 2;
-    if (path.step < kLeastShare || time == before.time) return Verdict::failed;
+    if (path.step < kLeastLoadShare || time == before.time) return Verdict::failed;
   }
   result.iterations = path.all;
   result.negative_pivots = negative_pivots(state);
