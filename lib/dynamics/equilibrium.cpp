@@ -275,7 +275,8 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
   return balanced && residual <= tolerance_ * loads_now_ + kNoise * std::sqrt(sum_noise_);
 }
 
-// By Newton's method, or by relaxation where a term does not know its tangent.
+// By Newton's method; by relaxation where a term does not know its tangent, and where the method
+// fails although every body is where it was.
 LoadStep Equilibrium::solve(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   LoadStep result{time};
@@ -286,24 +287,17 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
       keep(verdict == Verdict::found, result);
       return result;
     }
-    if (tangent_known_) refuse(state, result);
+    if (tangent_known_ && departed_ >= 0) refuse(state, result);
     state = before;
   }
   return relax(state, before, time, stop);
 }
 
-// Newton's method has found nothing.
+// Newton's method has found nothing, because a body has left its place.
 void Equilibrium::refuse(const State& state, const LoadStep& result) const {
-  std::string why = departure_;
-  if (departed_ < 0 && !fault_.empty()) why = fault_;
-  if (why.empty() && result.worst >= 0) {
-    why = fmt::format(
-        "the iteration does not converge; the sum of the forces on \"{}\" is {:.3g} of its own",
-        model_.name_of(result.worst), result.imbalance);
-  }
-  const bool rigid = departed_ >= 0 && departed_ < static_cast<BodyIndex>(model_.bodies.size());
+  const bool rigid = departed_ < static_cast<BodyIndex>(model_.bodies.size());
   throw Unstable(fmt::format("no equilibrium at t = {:.9g} s (load step {}): {}; {}", result.time,
-                             state.step, why, advice()),
+                             state.step, departure_, advice()),
                  rigid ? departed_ : -1);
 }
 

@@ -16,7 +16,7 @@ namespace apothem {
 
 class ContactTerm;
 
-/// Newton's method, and dynamic relaxation where the tangent of a term is not known. Friction is
+/// Newton's method, and dynamic relaxation where that cannot be used or fails. Friction is
 /// followed from load step to load step: within one, it is a function of the displacements since
 /// its start, so that the path of the relaxation leaves no trace.
 class Equilibrium {
@@ -94,7 +94,7 @@ class Equilibrium {
   static void begin_polishing(const State& state, NewtonPath& path);
   static void note_residual(double now, NewtonPath& path);
   [[nodiscard]] static bool is_stuck(const NewtonPath& path);
-  bool is_sound(const State& state);
+  [[nodiscard]] bool is_sound(const State& state) const;
   bool stays(const State& state, const State& before);
   bool try_forces(State& state, const State& before);
   bool find_tangent(const State& state);
@@ -191,7 +191,6 @@ class Equilibrium {
   bool tangent_known_ = true;   // false if a term does not know its tangent
   std::string departure_;       // what the first body does that leaves its place, in words
   BodyIndex departed_ = -1;     // this body
-  std::string fault_;           // why the forces of the last state could not be found
   double loads_ = 0;            // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
   double loads_now_ = 0;                // the same with the state that is tried

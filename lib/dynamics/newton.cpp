@@ -24,8 +24,8 @@ constexpr double kLeastLoadShare = 1e-4;  // of a load step
 constexpr double kLeastShareOfDeparted = 0.1;
 constexpr double kFalling = 0.1;  // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
-constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostHalvings = 6, kMostStalled = 6,
-              kMostShortened = 60, kMostShortenedNear = 25, kEasy = 4;
+constexpr int kMostInStep = 20, kMostOfAll = 10000, kFreeIterations = 2, kMostHalvings = 6,
+              kMostStalled = 6, kMostShortened = 12, kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
 constexpr double kProgress = 0.9;    // of the least residual in a step so far
@@ -154,8 +154,7 @@ bool Equilibrium::try_forces(State& state, const State& before) {
   try {
     find_forces(state, before);
     return true;
-  } catch (const Unstable& error) {
-    fault_ = error.what();
+  } catch (const Unstable&) {
     return false;
   }
 }
@@ -214,12 +213,11 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
 }
 
 // Whether the bodies of an equilibrium are within the range of the method.
-bool Equilibrium::is_sound(const State& state) {
+bool Equilibrium::is_sound(const State& state) const {
   try {
     check_shapes(state);
     return true;
-  } catch (const Unstable& error) {
-    fault_ = error.what();
+  } catch (const Unstable&) {
     return false;
   }
 }
@@ -278,7 +276,8 @@ bool Equilibrium::stays(const State& state, const State& before) {
 // whether the forces there are known.
 bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
   double share = path.damped ? shortened(step_) : 1;
-  const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
+  const bool meshed = !model_.deformables.empty();
+  const double growth = meshed && path.in_step <= kFreeIterations ? kMeshGrowth : 1;
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
@@ -291,10 +290,11 @@ bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) 
 
 void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
   path.base = state.x;
-  // Near a limit of the loads the way bends with every contact that begins to slip: a step that
-  // was hard to find is not followed by a longer one.
-  if (!near_ || path.in_step <= kEasy) path.shift /= kLonger * kLonger;
+  // The way bends with every contact that begins to slip: a step that was hard to find is not
+  // followed by a longer one.
+  if (path.in_step <= kEasy) path.shift /= kLonger * kLonger;
   path.in_step = 0;
+  if (!near_) path.shortened = 0;
 }
 
 // Again from where the step began.
@@ -316,7 +316,6 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   find_masses(state);
   NewtonPath path;
   departed_ = -1;
-  fault_.clear();
   path.until = time;
   path.damped = contact_ != nullptr;
   path.x_done = state.x;
