@@ -93,7 +93,7 @@ class Equilibrium {
   void begin_share(const State& state, NewtonPath& path);
   static void begin_polishing(const State& state, NewtonPath& path);
   static void note_residual(double now, NewtonPath& path);
-  [[nodiscard]] static bool is_stuck(const NewtonPath& path);
+  [[nodiscard]] bool is_stuck(const NewtonPath& path) const;
   [[nodiscard]] bool is_sound(const State& state) const;
   bool stays(const State& state, const State& before);
   bool try_forces(State& state, const State& before);

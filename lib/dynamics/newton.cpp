@@ -243,10 +243,11 @@ void Equilibrium::note_residual(double now, NewtonPath& path) {
   path.residual = now;
 }
 
-// Whether a step has taken its iterations, or has found no better places in the last ones.
-bool Equilibrium::is_stuck(const NewtonPath& path) {
+// Whether a step has taken its iterations, or has found no better places in the last ones. Near a
+// limit of the loads it is worth to take them all: there the residual falls late.
+bool Equilibrium::is_stuck(const NewtonPath& path) const {
   if (!path.damped) return path.in_step == kMostIterations;
-  return path.in_step == kMostInStep || (!path.polishing && path.stalled == kMostStalled);
+  return path.in_step == kMostInStep || (!near_ && !path.polishing && path.stalled == kMostStalled);
 }
 
 // Whether the bodies are still where an equilibrium may be, at the end of an implicit step. What
