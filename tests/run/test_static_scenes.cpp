@@ -245,7 +245,7 @@ TEST_CASE("random static scenes come to equilibria, or are refused with the reas
   using namespace static_scenes;
   SeededRandom random(45);
   RandomStatics scenes(random);
-  const int cases = long_run() ? 200 : scaled(100);
+  const int cases = long_run() ? 200 : scaled(56);
   int found = 0, unexplained = 0;
   for (int i = 0; i < cases; ++i) {
     const bool settled = i % 3 == 2;
