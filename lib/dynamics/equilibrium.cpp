@@ -21,10 +21,9 @@ constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
 constexpr double kRigidNoise = 8;                // times that: corners are turned and moved
 constexpr double kFar = 100;                     // of the scene's size: there a body is lost
-constexpr double kNear = 0.25;                   // of a body's inradius
 // What bodies have slipped that move at a settled start, the fastest one, of the scene's size. It
 // saturates every spring: a body that is dragged along is lost before it has gone so far.
-constexpr double kSlide = 1e3 * kFar;
+constexpr double kSlide = 1e5;
 
 }  // namespace
 
@@ -72,7 +71,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       for (const size_t axis : {0, 1}) pushed_[dofs.layout().rigid(wall) + axis] = 1;
     }
   }
-  far_ = kFar * scene.extent();
+  extent_ = scene.extent();
 }
 
 // Friction follows the displacements since the start of the load step, in one step of 1 s.
@@ -127,7 +126,7 @@ void Equilibrium::find_slip(const State& state) {
   }
   slip_.clear();
   if (fastest == 0) return;
-  const double time = kSlide * (far_ / kFar) / fastest;
+  const double time = kSlide * extent_ / fastest;
   for (const double v : state.v) slip_.push_back(time * v);
 }
 
@@ -145,7 +144,7 @@ void Equilibrium::refuse_diverged(const State& state, const std::string& body) c
 void Equilibrium::check_shapes(const State& state) const {
   const auto check = [&](const Vec2& u, const std::string& name) {
     if (!is_finite(u)) refuse_diverged(state, name);
-    if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) return;
+    if (std::max(std::abs(u.x()), std::abs(u.y())) < kFar * extent_) return;
     throw Unstable(
         fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
                     "equilibrium: nothing holds it against its loads{}; support it, or press it "
@@ -276,21 +275,39 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
   return balanced && residual <= tolerance_ * loads_now_ + kNoise * std::sqrt(sum_noise_);
 }
 
-// By Newton's method if it finds one, else by relaxation.
+// By Newton's method; by relaxation where a term does not know its tangent, and where the method
+// fails although every body is where it was.
 LoadStep Equilibrium::solve(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   LoadStep result{time};
   if (!pause_ || pause_->until != time) {
     ++state.step;
     const Verdict verdict = newton(state, before, time, stop, result);
-    if (verdict == Verdict::failed) {
-      state = before;
-    } else {
+    if (verdict != Verdict::failed) {
       keep(verdict == Verdict::found, result);
       return result;
     }
+    if (tangent_known_ && departed_ >= 0) refuse(state, result);
+    state = before;
   }
   return relax(state, before, time, stop);
+}
+
+// Newton's method has found nothing, because a body has left its place.
+void Equilibrium::refuse(const State& state, const LoadStep& result) const {
+  const bool rigid = departed_ < static_cast<BodyIndex>(model_.bodies.size());
+  throw Unstable(fmt::format("no equilibrium at t = {:.9g} s (load step {}): {}; {}", result.time,
+                             state.step, departure_, advice()),
+                 rigid ? departed_ : -1);
+}
+
+// What helps where no equilibrium is found.
+std::string Equilibrium::advice() const {
+  if (!slip_.empty()) {
+    return "support it, let prescribed velocities begin at 0, or leave out time.start";
+  }
+  return settling_ ? "support it, or leave out time.start"
+                   : "support it, reduce the load, or raise time.load_steps";
 }
 
 void Equilibrium::keep(bool complete, LoadStep& result) {
@@ -303,6 +320,7 @@ void Equilibrium::keep(bool complete, LoadStep& result) {
 LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
                            const std::function<bool()>& stop) {
   const State before = state;
+  driven_way_ = driven_way(before.time, time);
   LoadStep result = solve(state, before, time, stop);
   if (result.complete) {
     book(before, state, ledger);
@@ -402,24 +420,11 @@ void Equilibrium::begin_settling(const State& state) {
 
 void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   const State before = state;
+  driven_way_ = 0;
   begin_settling(state);
   if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
-}
-
-bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& stop) {
-  const State before = state;
-  begin_settling(state);
-  LoadStep result{state.time};
-  const Verdict verdict = newton(state, before, state.time, stop, result);
-  if (verdict == Verdict::stopped) throw Stopped();
-  if (verdict == Verdict::found) {
-    state.v = before.v;
-    return true;
-  }
-  go_back(state, before);
-  return false;
 }
 
 }  // namespace apothem

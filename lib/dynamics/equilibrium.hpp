@@ -16,9 +16,9 @@ namespace apothem {
 
 class ContactTerm;
 
-/// Newton's method, and dynamic relaxation where that fails. Friction is followed from load step to
-/// load step: within one, it is a function of the displacements since its start, so that the path
-/// of the relaxation leaves no trace.
+/// Newton's method, and dynamic relaxation where that cannot be used or fails. Friction is
+/// followed from load step to load step: within one, it is a function of the displacements since
+/// its start, so that the path of the relaxation leaves no trace.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;
@@ -41,9 +41,6 @@ class Equilibrium {
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
   void settle(State& state, const std::function<bool()>& stop);
-  /// The same by Newton's method alone. Returns false, with the state as it was, if that finds
-  /// none.
-  bool settle_by_newton(State& state, const std::function<bool()>& stop);
   /// A step of h (s) in time, from `before` to state.time: finds the places x with
   /// M (x - base) / h^2 = f(x), from those of `state` on; `base` are the places that forces do not
   /// reach. Driven coordinates stay where they are in `state`. Afterwards contacts remember the
@@ -78,16 +75,28 @@ class Equilibrium {
     std::int64_t in_step = 0;             // in this implicit step
     std::int64_t shortened = 0;           // implicit steps that were too long
     double residual = 0, at_start = 0;    // before the last iteration; at the start of the step
+    double least = 0;                     // residual in this implicit step
+    std::int64_t stalled = 0;             // iterations since it has fallen
     bool polishing = false;               // whether it goes on from an equilibrium to round-off
     std::vector<double> x_done, base, x;  // of the last equilibrium; at the start of the implicit
                                           // step; of the state that is tried
     void fields(Archive& archive);
   };
+  static constexpr double kNear = 0.25;  // of a body's inradius: it is still where it was
   enum class Verdict { found, failed, stopped };
   Verdict newton(State& state, const State& before, double time, const std::function<bool()>& stop,
                  LoadStep& result);
   Verdict find_share(State& state, const State& before, double time, NewtonPath& path,
                      const std::function<bool()>& stop, LoadStep& result);
+  Verdict finish_polishing(State& state, const State& before, LoadStep& result,
+                           const NewtonPath& path);
+  void begin_share(const State& state, NewtonPath& path);
+  static void begin_polishing(const State& state, NewtonPath& path);
+  static void note_residual(double now, NewtonPath& path);
+  [[nodiscard]] bool is_stuck(const NewtonPath& path) const;
+  [[nodiscard]] bool is_sound(const State& state) const;
+  bool stays(const State& state, const State& before);
+  bool try_forces(State& state, const State& before);
   bool find_tangent(const State& state);
   bool find_step(State& state, const NewtonPath& path, bool first);
   void put_on_rails();
@@ -99,7 +108,6 @@ class Equilibrium {
   [[nodiscard]] double shortened(const std::vector<double>& step) const;
   [[nodiscard]] double reach(size_t coordinate) const;
   [[nodiscard]] double first_shift() const;
-  [[nodiscard]] std::int64_t most_iterations() const;
   int negative_pivots(const State& state);
   [[nodiscard]] bool is_round_off(const State& state, const std::vector<double>& step) const;
   [[nodiscard]] double size_of_forces() const;
@@ -131,6 +139,8 @@ class Equilibrium {
                     LoadStep& result);
   [[noreturn]] void refuse_diverged(const State& state, const std::string& body) const;
   [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
+  [[nodiscard]] std::string advice() const;
+  [[noreturn]] void refuse_relaxation(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
   [[nodiscard]] double speed(size_t coordinate) const;
   [[nodiscard]] bool held(size_t coordinate) const {
@@ -177,7 +187,10 @@ class Equilibrium {
   std::int64_t iterations_ = 0;
   std::vector<double> lambda_;  // of rigid bodies: stiffness / inertia, 1/s^2
   std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m
-  double far_ = 0;              // m
+  double extent_ = 0;           // of the scene, m
+  bool tangent_known_ = true;   // false if a term does not know its tangent
+  std::string departure_;       // what the first body does that leaves its place, in words
+  BodyIndex departed_ = -1;     // this body
   double loads_ = 0;            // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
   double loads_now_ = 0;                // the same with the state that is tried

@@ -9,20 +9,27 @@
 #include <cmath>
 
 #include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/departure.hpp"
 #include "lib/dynamics/equilibrium.hpp"
 #include "lib/dynamics/unstable.hpp"
+#include "lib/model/inradius.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr int kMostIterations = 30;   // for a share of a load step
-constexpr double kLeastShare = 1e-4;  // of a load step
-constexpr double kFalling = 0.1;      // iterations that reduce the residual more are worth it
+constexpr int kMostIterations = 30;       // for a share of a load step
+constexpr double kLeastLoadShare = 1e-4;  // of a load step
+// The same where a body has left its place: a shorter share leads it the same way.
+constexpr double kLeastShareOfDeparted = 0.1;
+constexpr double kFalling = 0.1;  // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
-constexpr int kMostInStep = 20, kMostOfAll = 3000, kMostOfSlides = 60, kMostHalvings = 6,
-              kMostShortened = 60, kMostShortenedNear = 25, kEasy = 4;
+constexpr int kMostInStep = 20, kMostOfAll = 10000, kFreeIterations = 2, kMostHalvings = 6,
+              kMostStalled = 6, kMostShortened = 12, kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
+constexpr double kProgress = 0.9;    // of the least residual in a step so far
+constexpr double kLost = 3;          // of the scene's size, beyond what prescribed motion does
 constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;       // of a rigid body's inradius
 constexpr double kNearReach = 1e-3;  // of that, where the equilibrium is near
@@ -39,14 +46,16 @@ constexpr double kPivotNoise = 1e-11;
 void Equilibrium::NewtonPath::fields(Archive& archive) {
   archive("until", until)("done", done)("step", step)("damped", damped)("shift", shift);
   archive("iteration", iteration)("all", all)("in_step", in_step)("shortened", shortened);
-  archive("residual", residual)("at_start", at_start)("polishing", polishing);
+  archive("residual", residual)("at_start", at_start)("least", least)("stalled", stalled);
+  archive("polishing", polishing);
   archive.sized("x_done", x_done).sized("base", base).sized("x", x);
 }
 
 bool Equilibrium::find_tangent(const State& state) {
   tangent_.clear();
-  return std::ranges::all_of(terms_,
-                             [&](const auto& term) { return term->add_tangent(state, tangent_); });
+  tangent_known_ = std::ranges::all_of(
+      terms_, [&](const auto& term) { return term->add_tangent(state, tangent_); });
+  return tangent_known_;
 }
 
 // Steps of Newton's method along K + M/h^2 from the places `path.base`: those of an implicit Euler
@@ -140,55 +149,60 @@ void Equilibrium::put_on_rails() {
   }
 }
 
+// The forces of a state that is tried; false if it is out of the range of the method.
+bool Equilibrium::try_forces(State& state, const State& before) {
+  try {
+    find_forces(state, before);
+    return true;
+  } catch (const Unstable&) {
+    return false;
+  }
+}
+
+// After the last iteration from an equilibrium to round-off, which was worse than those before.
+Equilibrium::Verdict Equilibrium::finish_polishing(State& state, const State& before,
+                                                   LoadStep& result, const NewtonPath& path) {
+  state.x = path.base;
+  return try_forces(state, before) && reached(state, result) ? Verdict::found : Verdict::failed;
+}
+
 // One share of a load step, which ends at `time`. With a shift it is found in steps of growing h.
 Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, double time,
                                              NewtonPath& path, const std::function<bool()>& stop,
                                              LoadStep& result) {
+  state.time = time;
   bool known = false;  // whether the forces are those of the present places
   for (;; ++path.iteration, ++path.all) {
-    state.time = time;
-    if (!known) find_forces(state, before);
-    if (path.iteration == 0) {
-      path.polishing = false;
-      path.base = state.x;
-      if (path.damped) path.shift = first_shift();
-      path.in_step = 0;
-    }
-    double now = shifted_residual(state, path);
-    if (!std::isfinite(now)) return Verdict::failed;
-    if (path.iteration > 0) {
+    if (path.all > kMostOfAll) return Verdict::failed;
+    bool fine = known || try_forces(state, before);
+    if (path.iteration == 0) begin_share(state, path);
+    double now = fine ? shifted_residual(state, path) : HUGE_VAL;
+    fine = fine && std::isfinite(now);
+    if (fine && path.iteration > 0) {
       const bool good = reached(state, result);
       if (path.polishing && !(now < kFalling * path.residual)) {
         if (good && now <= path.residual) return Verdict::found;
-        // The equilibrium before was better.
-        state.x = path.base;
-        find_forces(state, before);
-        return reached(state, result) ? Verdict::found : Verdict::failed;
+        return finish_polishing(state, before, result, path);
       }
       if (good) {
-        path.polishing = true;
-        path.base = state.x;
-        path.shift *= kPolish;
-        path.in_step = 0;
+        begin_polishing(state, path);
         now = shifted_residual(state, path);
       }
     }
-    if (path.damped && !path.polishing && path.in_step > 0 &&
+    if (fine && path.damped && !path.polishing && path.in_step > 0 &&
         now <= std::max(kStepTolerance * path.at_start, rounded_residual(state))) {
-      if (near_ && strays(state, before)) return Verdict::failed;
+      if (!stays(state, before)) return Verdict::failed;
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
-    if (path.in_step == 0) path.at_start = now;
-    path.residual = now;
-    const int most = path.damped ? kMostInStep : kMostIterations;
-    if (path.all > most_iterations()) return Verdict::failed;
-    if (path.in_step == most) {
+    if (fine) note_residual(now, path);
+    fine = fine && !is_stuck(path) && find_step(state, path, path.iteration == 0);
+    if (!fine) {
+      if (path.polishing) return finish_polishing(state, before, result, path);
       if (!path.damped || !begin_shorter_step(state, path)) return Verdict::failed;
       known = false;
       continue;
     }
-    if (!find_step(state, path, path.iteration == 0)) return Verdict::failed;
     ++path.in_step;
     known = go(state, before, path);
     if (stop && stop()) {
@@ -198,33 +212,90 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
   }
 }
 
-// The friction of meshes has no exact tangent: if it does not converge soon, relaxation is faster.
-std::int64_t Equilibrium::most_iterations() const {
-  const bool slides = contact_ && contact_->dissipates() && !model_.deformables.empty();
-  return slides ? kMostOfSlides : kMostOfAll;
+// Whether the bodies of an equilibrium are within the range of the method.
+bool Equilibrium::is_sound(const State& state) const {
+  try {
+    check_shapes(state);
+    return true;
+  } catch (const Unstable&) {
+    return false;
+  }
+}
+
+void Equilibrium::begin_share(const State& state, NewtonPath& path) {
+  path.polishing = false;
+  path.base = state.x;
+  if (path.damped) path.shift = first_shift();
+  path.in_step = path.shortened = 0;
+}
+
+void Equilibrium::begin_polishing(const State& state, NewtonPath& path) {
+  path.polishing = true;
+  path.base = state.x;
+  path.shift *= kPolish;
+  path.in_step = 0;
+}
+
+void Equilibrium::note_residual(double now, NewtonPath& path) {
+  if (path.in_step == 0) path.at_start = now, path.least = HUGE_VAL, path.stalled = 0;
+  path.stalled = now < kProgress * path.least ? 0 : path.stalled + 1;
+  path.least = std::min(path.least, now);
+  path.residual = now;
+}
+
+// Whether a step has taken its iterations, or has found no better places in the last ones. Near a
+// limit of the loads it is worth to take them all: there the residual falls late.
+bool Equilibrium::is_stuck(const NewtonPath& path) const {
+  if (!path.damped) return path.in_step == kMostIterations;
+  return path.in_step == kMostInStep || (!near_ && !path.polishing && path.stalled == kMostStalled);
+}
+
+// Whether the bodies are still where an equilibrium may be, at the end of an implicit step. What
+// the first body does that leaves its neighbourhood is noted while its contacts tell.
+bool Equilibrium::stays(const State& state, const State& before) {
+  if (near_) return !strays(state, before);
+  const auto bodies = static_cast<BodyIndex>(body_loads_.size());
+  double farthest = 0;
+  BodyIndex mover = -1;
+  for (BodyIndex b = 0; b < bodies; ++b) {
+    if (!is_free(model_, b)) continue;
+    const double part = motion_of(model_, state, before, b).most() / inradius_of(model_, b);
+    if (part > farthest) farthest = part, mover = b;
+  }
+  if (mover < 0) return true;
+  const double way = motion_of(model_, state, before, mover).most();
+  if (departed_ < 0 && way > kNear * inradius_of(model_, mover) + driven_way_) {
+    departed_ = mover;
+    departure_ = describe_departure(
+        model_, state, before, mover,
+        contact_ ? contact_->contacts().records() : std::vector<ContactRecord>());
+  }
+  return way <= kLost * extent_ + driven_way_;
 }
 
 // Goes the step; where contacts may begin or end it is halved until the residual falls. Returns
 // whether the forces there are known.
 bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
   double share = path.damped ? shortened(step_) : 1;
-  const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
+  const bool meshed = !model_.deformables.empty();
+  const double growth = meshed && path.in_step <= kFreeIterations ? kMeshGrowth : 1;
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
     if (!path.damped || path.polishing || path.iteration == 0) return false;
-    find_forces(state, before);
-    if (halved == kMostHalvings) return true;
-    if (shifted_residual(state, path) < growth * path.residual) return true;
+    const bool fine = try_forces(state, before);
+    if (halved == kMostHalvings) return fine;
+    if (fine && shifted_residual(state, path) < growth * path.residual) return true;
   }
 }
 
 void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
   path.base = state.x;
-  // Near a limit of the loads the way bends with every contact that begins to slip: a step that
-  // was hard to find is not followed by a longer one.
-  if (!near_ || path.in_step <= kEasy) path.shift /= kLonger * kLonger;
+  // The way bends with every contact that begins to slip: a step that was hard to find is not
+  // followed by a longer one.
+  if (path.in_step <= kEasy) path.shift /= kLonger * kLonger;
   path.in_step = 0;
+  if (!near_) path.shortened = 0;
 }
 
 // Again from where the step began.
@@ -245,6 +316,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   find_forces(state, before);
   find_masses(state);
   NewtonPath path;
+  departed_ = -1;
   path.until = time;
   path.damped = contact_ != nullptr;
   path.x_done = state.x;
@@ -256,13 +328,8 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   for (;;) {
     const double share = std::min(1., path.done + path.step);
     const double at = share < 1 ? before.time + share * (time - before.time) : time;
-    Verdict verdict = Verdict::failed;
-    try {
-      verdict = find_share(state, before, at, path, stop, result);
-      if (verdict == Verdict::found) check_shapes(state);
-    } catch (const Unstable&) {
-      verdict = Verdict::failed;
-    }
+    Verdict verdict = find_share(state, before, at, path, stop, result);
+    if (verdict == Verdict::found && !is_sound(state)) verdict = Verdict::failed;
     if (verdict == Verdict::stopped) {
       path.x = state.x;
       newton_pause_ = std::move(path);
@@ -275,11 +342,13 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
       path.done = share;
       path.x_done = state.x;
       path.step *= 2;
+      departed_ = -1;
       continue;
     }
     state.x = path.x_done;
     path.step = (share - path.done) / 2;
-    if (path.step < kLeastShare || time == before.time) return Verdict::failed;
+    const double least = departed_ >= 0 ? kLeastShareOfDeparted : kLeastLoadShare;
+    if (path.step < least || time == before.time || !tangent_known_) return Verdict::failed;
   }
   result.iterations = path.all;
   result.negative_pivots = negative_pivots(state);

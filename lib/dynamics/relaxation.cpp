@@ -98,7 +98,7 @@ void Equilibrium::raise_masses() {
   }
 }
 
-void Equilibrium::refuse(const State& state, const LoadStep& result) const {
+void Equilibrium::refuse_relaxation(const State& state, const LoadStep& result) const {
   throw Unstable(fmt::format(
       "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: "
       "forces out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of "
@@ -181,7 +181,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
       if (!std::isfinite(result.residual)) {
         refuse_diverged(state, model_.name_of(std::max(result.unbalanced, 0)));
       }
-      if (step >= kMostSteps) refuse(state, result);
+      if (step >= kMostSteps) refuse_relaxation(state, result);
     }
     move(state, step == 0);
     if (stop && stop()) {

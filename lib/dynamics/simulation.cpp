@@ -13,7 +13,6 @@
 #include "lib/dynamics/implicit.hpp"
 #include "lib/dynamics/loads.hpp"
 #include "lib/dynamics/mass_damping.hpp"
-#include "lib/dynamics/settle.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/model/pairs.hpp"
 
@@ -340,21 +339,14 @@ void Simulation::inherit(const FrictionMemory& memory) {
 }
 
 void Simulation::settle(const std::function<bool()>& stop) {
-  Equilibrium equilibrium(model_, dofs_, terms_, contact_, kSettled);
-  if (model_.deformables.empty()) {
-    // Where Newton's method finds nothing, bodies of their own masses may still come to rest.
-    if (!contact_ || !equilibrium.settle_by_newton(state_, stop)) {
-      apothem::settle(
-          {model_, dofs_, state_, lambda_, step_choice().stability},
-          [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt, 0, true); },
-          stop);
-    }
-  } else {
-    try {
-      equilibrium.settle(state_, stop);
-    } catch (const Unstable& error) {
-      throw Unrunnable(error.what(), "time/start", -1);
-    }
+  if (!contact_ && model_.deformables.empty()) {
+    throw Unrunnable("nothing can touch anything: no body comes to rest; leave out time.start",
+                     "time/start", -1);
+  }
+  try {
+    Equilibrium(model_, dofs_, terms_, contact_, kSettled).settle(state_, stop);
+  } catch (const Unstable& error) {
+    throw Unrunnable(error.what(), "time/start", -1);
   }
   find_forces(state_.v, 0);
   for (const auto& term : terms_) term->start_ledger();

@@ -25,7 +25,7 @@ struct TimeSettings {
   std::optional<double> safety = {}, element_safety = {};
   /// Corrects steps in which a contact begins or ends (contact/law/event_impulse.hpp).
   bool onsets = true;
-  bool settled = false;               ///< start in equilibrium (dynamics/settle.cpp)
+  bool settled = false;               ///< start in equilibrium (dynamics/equilibrium.hpp)
   bool statics = false;               ///< a sequence of equilibria (dynamics/equilibrium.cpp)
   int load_steps = 10;                ///< of a static run
   bool automatic_load_steps = false;  ///< their number follows from the path (run/load_path.hpp)

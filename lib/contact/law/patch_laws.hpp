@@ -112,7 +112,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   // The tangent is only as accurate as the direction of the force, so a small tangential part of an
   // approach velocity is not slip.
   const Real seen = along * p.size;
-  const Truth<Real> noise = seen * seen <= velocity.dot(velocity) * (p.force_error * p.force_error);
+  const Truth<Real> noise = seen * seen < velocity.dot(velocity) * (p.force_error * p.force_error);
   const Real slip = select(noise, Real(0.), along);
   const Real normal = p.normal_stiffness * p.size + p.push;
   const CoulombSpring<Real> spring{select(p.has_direction, p.tangential_stiffness(), Real(0.)),

@@ -7,6 +7,8 @@
 
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
+#include "lib/contact/mesh/outline_friction_tangent.hpp"
+#include "lib/contact/mesh/outline_spring.hpp"
 #include "lib/execution/dispatch.hpp"
 #include "lib/execution/elementary.hpp"
 
@@ -85,6 +87,7 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
   for (size_t g = 0; g < groups.size(); ++g) {
     SpringContact& sum = contacts_[static_cast<size_t>(unit.first_group) + g] = {};
     sum.edge = groups[g].edge;
+    sum.tx = outlines_.tx[sum.edge], sum.ty = outlines_.ty[sum.edge];
     sum.ratio = step.blocks.laws()[static_cast<size_t>(groups[g].law)].law->spread_ratio();
     step.blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
       const EdgeFaceBlock& block = step.blocks.blocks()[i];
@@ -118,18 +121,18 @@ void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> wa
   }
 }
 
-// The fraction of a long step for which a new contact was closed; motion before that is no slip.
-double OutlineFriction::closed_fraction(const Step& step, const EdgeFaceUnit& unit,
-                                        const EdgeFaceGroup& group, const SpringContact& contact) {
+// The part of the slip of a step that the spring of a contact follows.
+double OutlineFriction::followed_fraction(const Step& step, const EdgeFaceUnit& unit,
+                                          const EdgeFaceGroup& group,
+                                          const SpringContact& contact) {
+  if (!step.finite || contact.is_old) return 1;
   double width = 0, depth = 0;
   step.blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
     const EdgeFaceTouch& touch = step.blocks.touches()[i];
     width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
     depth += touch.sum[lane] * touch.edge_length[lane];
   });
-  const double approach = -(contact.nx * contact.rate_x + contact.ny * contact.rate_y);
-  const double closed = approach / contact.normal * step.dt;
-  return closed > depth / width ? depth / width / closed : 1;
+  return closed_fraction(contact, width, depth, step.dt);
 }
 
 // Updates the springs of a unit and finds their forces. Returns their energy, J.
@@ -143,17 +146,8 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
     const PairLaw& law = *step.blocks.laws()[static_cast<size_t>(group.law)].law;
     double pull = 0;
     if (contact.normal > 0 && law.rough()) {
-      const double pressed = contact.pressed + contact.push_before;
-      double slip = contact.slip();
-      const CoulombSpring<double> spring{
-          contact.stiffness,
-          step.limited ? FrictionLimit<double>::of(law)(pressed, slip) : HUGE_VAL};
-      contact.followed = contact.stiffness;
-      if (step.finite && !contact.is_old) {
-        const double fraction = closed_fraction(step, unit, group, contact);
-        slip *= fraction, contact.followed *= fraction;
-      }
-      contact.friction = spring.after(contact.force_before, slip * step.dt);
+      follow_slip<double>({law, step.dt, step.limited},
+                          followed_fraction(step, unit, group, contact), contact);
       energy += spring_energy(contact.friction, contact.stiffness);
       worker.springs.push_back({.key = key_of(group),
                                 .force = contact.friction,
@@ -218,6 +212,7 @@ double OutlineFriction::update_friction(const EdgeFaceBlocks& blocks, const Kine
                                         double dt, FrictionMemory& memory) {
   const OutlineSurfaces& o = outlines_;
   const Step step{blocks, dt, now.finite, !now.restored};
+  tried_dt_ = dt;
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
   drags_.resize(n), drags_before_.resize(n);
@@ -388,6 +383,16 @@ void OutlineFriction::each_coordinate(const EdgeFaceBlocks& blocks, const EdgeFa
 
 void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
                                   Tangent& tangent) const {
+  if (tangent.friction_sticks()) {
+    add_sticking_tangent(blocks, first_node, tangent);
+  } else {
+    add_friction_tangent({outlines_, blocks, contacts_, velocities_, tried_dt_}, first_node,
+                         tangent);
+  }
+}
+
+void OutlineFriction::add_sticking_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
+                                           Tangent& tangent) const {
   CoordinateSum along;
   for (const EdgeFaceUnit& unit : blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
@@ -395,8 +400,6 @@ void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_nod
       const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
       const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
       if (!law.rough() || !(contact.normal > 0)) continue;
-      const double limit = FrictionLimit<double>::of(law)(contact.pressed, contact.slip());
-      if (!tangent.friction_sticks() && is_sliding(contact.friction, limit)) continue;
       along.clear();
       each_coordinate(blocks, unit, groups[g], contact,
                       [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {

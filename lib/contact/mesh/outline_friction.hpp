@@ -48,9 +48,9 @@ class OutlineFriction {
   void keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots, size_t& next,
                    FrictionMemory& memory);
 
-  /// Adds the tangent of the springs of the last update that stick. It is an approximation, and
-  /// symmetric: that springs which slide follow the normal force, and that the common normals turn,
-  /// does not count. Newton's method then takes more iterations, which are cheaper.
+  /// Adds the tangent of the springs of the last update, which was a trial: the derivatives of
+  /// their forces, which are not symmetric; or, if friction sticks, only the stiffness of all
+  /// springs along their tangents.
   void add_tangent(const EdgeFaceBlocks& blocks, size_t first_node, Tangent& tangent) const;
 
   /// The force of the springs on a vertex, N.
@@ -86,9 +86,9 @@ class OutlineFriction {
   void find_contacts(const Step& step, const EdgeFaceUnit& unit);
   void find_before(const Step& step, ContactWalk<const Spring> walk);
   void update_unit(const Step& step, size_t index, FrictionWorkspace& worker, bool divided);
-  [[nodiscard]] static double closed_fraction(const Step& step, const EdgeFaceUnit& unit,
-                                              const EdgeFaceGroup& group,
-                                              const SpringContact& contact);
+  [[nodiscard]] static double followed_fraction(const Step& step, const EdgeFaceUnit& unit,
+                                                const EdgeFaceGroup& group,
+                                                const SpringContact& contact);
   [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit,
                               FrictionWorkspace& worker);
   [[nodiscard]] double pull(const Step& step, const EdgeFaceUnit& unit, FrictionWorkspace& worker,
@@ -98,6 +98,8 @@ class OutlineFriction {
   void each_coordinate(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                        const EdgeFaceGroup& group, const SpringContact& contact,
                        const Add& add) const;
+  void add_sticking_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
+                            Tangent& tangent) const;
   template <class F>
   void each_dashpot(const EdgeFaceBlocks& blocks, const F& f);
 
@@ -105,7 +107,7 @@ class OutlineFriction {
   const PairTable& table_;
   const OutlineSurfaces& outlines_;
   Threads threads_;
-  CommonNormals normals_;
+  CommonNormals<double> normals_;
   // Bodies that have become inactive may still have forces, in drags_ or drags_before_. For this
   // number of steps all bodies are treated.
   static constexpr int kBothVectors = 2;
@@ -115,6 +117,7 @@ class OutlineFriction {
   std::vector<VertexDrag> drags_, drags_before_;  // friction on the vertices
   std::vector<OutlineSlip> slips_;                // slip of each block
   std::vector<SpringContact> contacts_;           // one entry for each group
+  double tried_dt_ = 0;                           // length of the last update, s
   std::vector<double> body_powers_;  // power of the forces of the step before on each body, W
   std::vector<UnitResult> units_;
   /// Sums over all contacts of two bodies, treated as rigid, for their dashpots.

@@ -1,7 +1,6 @@
 #include "lib/contact/rigid/pair_tangent.hpp"
 
 #include <array>
-#include <limits>
 
 #include "lib/contact/law/patch_laws.hpp"
 
@@ -36,11 +35,7 @@ void set_memory(const TriedFriction& friction, PatchStep<Moving>& p) {
   p.rate = {rate.x, rate.y, rate.a, rate.b};
   p.rate.x.d.v[0] = p.rate.y.d.v[1] = p.rate.a.d.v[2] = p.rate.b.d.v[3] = 1 / dt;
   p.force_error = 0;
-  if (friction.sticks) {
-    p.limit = FrictionLimit<Moving>::infinite();
-    // Where nothing moves, the slip is zero, but its derivatives count: no slip is noise.
-    p.force_error = std::numeric_limits<double>::quiet_NaN();
-  }
+  if (friction.sticks) p.limit = FrictionLimit<Moving>::infinite();
   p.begins = friction.begins;
   p.push = friction.now.push;
   if (friction.before) {
