@@ -60,25 +60,27 @@ BodyShift motion_of(const Model& model, const State& state, const State& before,
   return {way.head<2>(), way[2], model.bodies[b].reach()};
 }
 
-std::string describe_departure(const Model& model, const State& state, const State& before,
-                               BodyIndex body, std::span<const ContactRecord> contacts) {
+Departure describe_departure(const Model& model, const State& state, const State& before,
+                             BodyIndex body, std::span<const ContactRecord> contacts) {
   const BodyShift motion = motion_of(model, state, before, body);
   const Grip grip = grip_of(model, body, contacts);
   const std::string name = model.name_of(body);
   if (!(grip.pressed > 0)) {
-    return fmt::format("\"{}\" falls, or flies off: it touches nothing that presses on it", name);
+    return {fmt::format("\"{}\" falls, or flies off: it touches nothing that presses on it", name),
+            true};
   }
   const std::string on = model.name_of(grip.partner);
   const bool at_limit = grip.rubbed >= kSlides * grip.limit;
   if (motion.size * std::abs(motion.turn) > motion.shift.norm()) {
-    return fmt::format("\"{}\" tips over or rolls on \"{}\"", name, on);
+    return {fmt::format("\"{}\" tips over or rolls on \"{}\"", name, on)};
   }
   if (at_limit) {
-    return fmt::format("\"{}\" slides on \"{}\", {}", name, on,
-                       grip.limit > 0 ? "with friction at its limit" : "without friction");
+    return {fmt::format("\"{}\" slides on \"{}\", {}", name, on,
+                        grip.limit > 0 ? "with friction at its limit" : "without friction"),
+            true};
   }
-  return fmt::format("\"{}\" moves away from where it lies on \"{}\": it tips over, or is pushed",
-                     name, on);
+  return {fmt::format("\"{}\" moves away from where it lies on \"{}\": it tips over, or is pushed",
+                      name, on)};
 }
 
 }  // namespace apothem

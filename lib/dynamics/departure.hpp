@@ -21,8 +21,12 @@ struct BodyShift {
 };
 BodyShift motion_of(const Model& model, const State& state, const State& before, BodyIndex body);
 
-/// As in `"block" slides on "slope", with friction at its limit`; `contacts` are those of `state`.
-std::string describe_departure(const Model& model, const State& state, const State& before,
-                               BodyIndex body, std::span<const ContactRecord> contacts);
+struct Departure {
+  std::string words;     ///< as in `"block" slides on "slope", with friction at its limit`
+  bool is_lost = false;  ///< whether nothing holds it: it falls, or slides
+};
+/// `contacts` are those of `state`.
+Departure describe_departure(const Model& model, const State& state, const State& before,
+                             BodyIndex body, std::span<const ContactRecord> contacts);
 
 }  // namespace apothem

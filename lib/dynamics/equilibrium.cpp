@@ -297,7 +297,7 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
 void Equilibrium::refuse(const State& state, const LoadStep& result) const {
   const bool rigid = departed_ < static_cast<BodyIndex>(model_.bodies.size());
   throw Unstable(fmt::format("no equilibrium at t = {:.9g} s (load step {}): {}; {}", result.time,
-                             state.step, departure_, advice()),
+                             state.step, departure_.words, advice()),
                  rigid ? departed_ : -1);
 }
 
@@ -425,6 +425,22 @@ void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
+}
+
+bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& stop) {
+  const State before = state;
+  driven_way_ = 0;
+  begin_settling(state);
+  LoadStep result{state.time};
+  const Verdict verdict = newton(state, before, state.time, stop, result);
+  if (verdict == Verdict::stopped) throw Stopped();
+  if (verdict == Verdict::found) {
+    state.v = before.v;
+    return true;
+  }
+  if (tangent_known_ && departed_ >= 0 && departure_.is_lost) refuse(state, result);
+  go_back(state, before);
+  return false;
 }
 
 }  // namespace apothem

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "lib/dynamics/departure.hpp"
 #include "lib/dynamics/quiet_motion.hpp"
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/term.hpp"
@@ -41,6 +42,9 @@ class Equilibrium {
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
   void settle(State& state, const std::function<bool()>& stop);
+  /// The same by Newton's method alone. Returns false, with the state as it was, if that finds
+  /// none. Throws Unstable if a body slides or falls.
+  bool settle_by_newton(State& state, const std::function<bool()>& stop);
   /// A step of h (s) in time, from `before` to state.time: finds the places x with
   /// M (x - base) / h^2 = f(x), from those of `state` on; `base` are the places that forces do not
   /// reach. Driven coordinates stay where they are in `state`. Afterwards contacts remember the
@@ -189,7 +193,7 @@ class Equilibrium {
   std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m
   double extent_ = 0;           // of the scene, m
   bool tangent_known_ = true;   // false if a term does not know its tangent
-  std::string departure_;       // what the first body does that leaves its place, in words
+  Departure departure_;         // what the first body does that leaves its place
   BodyIndex departed_ = -1;     // this body
   double loads_ = 0;            // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N

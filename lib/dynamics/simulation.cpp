@@ -13,6 +13,7 @@
 #include "lib/dynamics/implicit.hpp"
 #include "lib/dynamics/loads.hpp"
 #include "lib/dynamics/mass_damping.hpp"
+#include "lib/dynamics/settle.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/model/pairs.hpp"
 
@@ -343,10 +344,22 @@ void Simulation::settle(const std::function<bool()>& stop) {
     throw Unrunnable("nothing can touch anything: no body comes to rest; leave out time.start",
                      "time/start", -1);
   }
+  Equilibrium equilibrium(model_, dofs_, terms_, contact_, kSettled);
+  bool settled = true;
   try {
-    Equilibrium(model_, dofs_, terms_, contact_, kSettled).settle(state_, stop);
+    if (model_.deformables.empty()) {
+      settled = equilibrium.settle_by_newton(state_, stop);
+    } else {
+      equilibrium.settle(state_, stop);
+    }
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "time/start", -1);
+  }
+  if (!settled) {  // Bodies of their own masses may still come to rest, as in tall stacks.
+    apothem::settle(
+        {model_, dofs_, state_, lambda_, step_choice().stability},
+        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt, 0, true); },
+        stop);
   }
   find_forces(state_.v, 0);
   for (const auto& term : terms_) term->start_ledger();

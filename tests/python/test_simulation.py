@@ -456,7 +456,8 @@ class Interrupts(unittest.TestCase):
     def test_ctrl_c_ends_the_search_for_a_settled_start(self):
         code = ("import apothem\n"
                 f"scene = apothem.load({str(SOURCE / 'data/scenes/slope-stands.json')!r},\n"
-                "                     set={'contact.friction.coefficient': 0.56})\n"
+                "                     set={'contact.friction.law': 'per_edge', 'contact.friction.coefficient': 0.56,\n"
+                "                          'contact.damping': {'model': 'normal_viscous', 'ratio': 0.2}})\n"
                 "print('settling', flush=True)\n"
                 "try:\n    apothem.Simulation(scene)\nexcept KeyboardInterrupt:\n    print('interrupted')\n")
         with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:

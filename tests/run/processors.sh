@@ -34,7 +34,7 @@ elements=("${hopper[@]}" --set 'materials.rock={"density":2000,"young":1e8,"pois
 # each edge, dashpots along the normal, and damping of the whole motion.
 distance=("${hopper[@]}" --set contact.field=distance --set 'contact.friction={"coefficient":0.5,"law":"per_edge"}'
           --set 'contact.damping=[{"model":"normal_viscous","ratio":0.2},{"model":"mass","rate":1}]')
-declare -A until=([hopper]=0.2 [soft]=0.08 [elements]=0.08 [distance]=0.1)
+declare -A until=([hopper]=0.2 [soft]=0.08 [elements]=0.08 [distance]=0.15)
 
 results() { # PROGRAM FOLDER ARGUMENTS
   local on=$1 to=$2

@@ -204,9 +204,11 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
 
 TEST_CASE("Ctrl-C ends the search for a settled start, and no run has begun", "[program][slow]") {
   const Folder folder;
-  const Result r = run({"run", test::kSource + "/data/scenes/slope-stands.json", "--set",
-                        "contact.friction.coefficient=0.56", "-o", folder / "out"},
-                       folder, {.interrupt_after = kSanitized ? 6. : 2.});  // it takes minutes
+  const Result r =
+      run({"run", test::kSource + "/data/scenes/slope-stands.json", "--set",
+           "contact.friction={\"coefficient\": 0.56, \"law\": \"per_edge\"}", "--set",
+           "contact.damping={\"model\": \"normal_viscous\", \"ratio\": 0.2}", "-o", folder / "out"},
+          folder, {.interrupt_after = kSanitized ? 6. : 2.});  // it takes minutes
   INFO(r.err);
   CHECK(r.code == 130);
   CHECK_THAT(r.err, Catch::Contains("not at rest yet"));
