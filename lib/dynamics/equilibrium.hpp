@@ -79,8 +79,6 @@ class Equilibrium {
     std::int64_t in_step = 0;             // in this implicit step
     std::int64_t shortened = 0;           // implicit steps that were too long
     double residual = 0, at_start = 0;    // before the last iteration; at the start of the step
-    double least = 0;                     // residual in this implicit step
-    std::int64_t stalled = 0;             // iterations since it has fallen
     bool polishing = false;               // whether it goes on from an equilibrium to round-off
     std::vector<double> x_done, base, x;  // of the last equilibrium; at the start of the implicit
                                           // step; of the state that is tried
@@ -96,8 +94,7 @@ class Equilibrium {
                            const NewtonPath& path);
   void begin_share(const State& state, NewtonPath& path);
   static void begin_polishing(const State& state, NewtonPath& path);
-  static void note_residual(double now, NewtonPath& path);
-  [[nodiscard]] bool is_stuck(const NewtonPath& path) const;
+  [[nodiscard]] static bool is_stuck(const NewtonPath& path);
   [[nodiscard]] bool is_sound(const State& state) const;
   bool stays(const State& state, const State& before);
   bool try_forces(State& state, const State& before);

@@ -24,11 +24,10 @@ constexpr double kLeastLoadShare = 1e-4;  // of a load step
 constexpr double kLeastShareOfDeparted = 0.1;
 constexpr double kFalling = 0.1;  // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
-constexpr int kMostInStep = 20, kMostOfAll = 10000, kFreeIterations = 2, kMostHalvings = 6,
-              kMostStalled = 6, kMostShortened = 12, kMostShortenedNear = 25, kEasy = 4;
+constexpr int kMostInStep = 20, kMostOfAll = 10000, kMostHalvings = 6, kMostShortened = 12,
+              kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
-constexpr double kProgress = 0.9;    // of the least residual in a step so far
 constexpr double kLost = 3;          // of the scene's size, beyond what prescribed motion does
 constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;       // of a rigid body's inradius
@@ -46,7 +45,7 @@ constexpr double kPivotNoise = 1e-11;
 void Equilibrium::NewtonPath::fields(Archive& archive) {
   archive("until", until)("done", done)("step", step)("damped", damped)("shift", shift);
   archive("iteration", iteration)("all", all)("in_step", in_step)("shortened", shortened);
-  archive("residual", residual)("at_start", at_start)("least", least)("stalled", stalled);
+  archive("residual", residual)("at_start", at_start);
   archive("polishing", polishing);
   archive.sized("x_done", x_done).sized("base", base).sized("x", x);
 }
@@ -195,7 +194,8 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
-    if (fine) note_residual(now, path);
+    if (fine && path.in_step == 0) path.at_start = now;
+    if (fine) path.residual = now;
     fine = fine && !is_stuck(path) && find_step(state, path, path.iteration == 0);
     if (!fine) {
       if (path.polishing) return finish_polishing(state, before, result, path);
@@ -236,18 +236,9 @@ void Equilibrium::begin_polishing(const State& state, NewtonPath& path) {
   path.in_step = 0;
 }
 
-void Equilibrium::note_residual(double now, NewtonPath& path) {
-  if (path.in_step == 0) path.at_start = now, path.least = HUGE_VAL, path.stalled = 0;
-  path.stalled = now < kProgress * path.least ? 0 : path.stalled + 1;
-  path.least = std::min(path.least, now);
-  path.residual = now;
-}
-
-// Whether a step has taken its iterations, or has found no better places in the last ones. Near a
-// limit of the loads it is worth to take them all: there the residual falls late.
-bool Equilibrium::is_stuck(const NewtonPath& path) const {
-  if (!path.damped) return path.in_step == kMostIterations;
-  return path.in_step == kMostInStep || (!near_ && !path.polishing && path.stalled == kMostStalled);
+// Whether a step has taken its iterations.
+bool Equilibrium::is_stuck(const NewtonPath& path) {
+  return path.in_step == (path.damped ? kMostInStep : kMostIterations);
 }
 
 // Whether the bodies are still where an equilibrium may be, at the end of an implicit step. What
@@ -277,8 +268,7 @@ bool Equilibrium::stays(const State& state, const State& before) {
 // whether the forces there are known.
 bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
   double share = path.damped ? shortened(step_) : 1;
-  const bool meshed = !model_.deformables.empty();
-  const double growth = meshed && path.in_step <= kFreeIterations ? kMeshGrowth : 1;
+  const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
@@ -291,9 +281,9 @@ bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) 
 
 void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
   path.base = state.x;
-  // The way bends with every contact that begins to slip: a step that was hard to find is not
-  // followed by a longer one.
-  if (path.in_step <= kEasy) path.shift /= kLonger * kLonger;
+  // Near a limit of the loads the way bends with every contact that begins to slip: a step that
+  // was hard to find is not followed by a longer one.
+  if (!near_ || path.in_step <= kEasy) path.shift /= kLonger * kLonger;
   path.in_step = 0;
   if (!near_) path.shortened = 0;
 }
