@@ -52,7 +52,7 @@ double OverlapEnergy::volume_under(const PlacedPotential& p, const Vec2& shift,
                                    const std::vector<Vec2>& ring) {
   if (ring.size() < 3) return 0;
   // Coordinates begin at a vertex of the ring, so that they are as small as the ring.
-  const Vec2 origin = ring.front();
+  const Vec2& origin = ring.front();
   ring_.clear();
   Vec2 middle = Vec2::Zero();
   for (const Vec2& v : ring) {

@@ -64,12 +64,12 @@ Departure describe_departure(const Model& model, const State& state, const State
                              BodyIndex body, std::span<const ContactRecord> contacts) {
   const BodyShift motion = motion_of(model, state, before, body);
   const Grip grip = grip_of(model, body, contacts);
-  const std::string name = model.name_of(body);
+  const std::string& name = model.name_of(body);
   if (!(grip.pressed > 0)) {
     return {fmt::format("\"{}\" falls, or flies off: it touches nothing that presses on it", name),
             true};
   }
-  const std::string on = model.name_of(grip.partner);
+  const std::string& on = model.name_of(grip.partner);
   const bool at_limit = grip.rubbed >= kSlides * grip.limit;
   if (motion.size * std::abs(motion.turn) > motion.shift.norm()) {
     return {fmt::format("\"{}\" tips over or rolls on \"{}\"", name, on)};

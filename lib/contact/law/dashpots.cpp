@@ -42,13 +42,13 @@ Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffnes
 // quadratic equation for z.
 double Dashpot::Normal::push(double free, double elastic, double kept) const {
   if (free >= -power * least * elastic) return free;
-  const double more = elastic * (kept + power * (1 - kept)) + free, a = power - 1;
-  if (!(a > 0 && more > 0)) return -elastic;
+  const double more = elastic * (kept + power * (1 - kept)) + free, rise = power - 1;
+  if (!(rise > 0 && more > 0)) return -elastic;
   const double even = power * (1 - level);
-  const double linear = a * elastic * power * (kept * level + (1 - kept));
+  const double linear = rise * elastic * power * (kept * level + (1 - kept));
   const double z =
-      more / (linear + std::sqrt(linear * linear + a * kept * even * even * elastic * more));
-  return -elastic * (1 - a * z * (2 * power * level + even * even * z));
+      more / (linear + std::sqrt(linear * linear + rise * kept * even * even * elastic * more));
+  return -elastic * (1 - rise * z * (2 * power * level + even * even * z));
 }
 
 void Dashpots::clear() {

@@ -193,7 +193,9 @@ class FrictionTangent {
 
   ByCoordinate& column(size_t coordinate) {
     const auto found = std::ranges::find(columns_, coordinate, &ByCoordinate::coordinate);
-    return found != columns_.end() ? *found : columns_.emplace_back(coordinate, 0., 0.);
+    if (found != columns_.end()) return *found;
+    columns_.push_back({coordinate, 0, 0});
+    return columns_.back();
   }
 
   // The contacts of one spring.
