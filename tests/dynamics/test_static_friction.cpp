@@ -397,7 +397,7 @@ TEST_CASE("free rigid bodies are in equilibrium in static runs", "[static_fricti
 }
 
 TEST_CASE("a body that a prescribed one moves is as balanced as the tolerance says",
-          "[static_friction]") {
+          "[static_friction][slow]") {
   for (const bool turns : {true, false}) {
     Model tilted;
     tilted.materials = stone_on_block(true).materials;
