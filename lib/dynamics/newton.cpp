@@ -24,7 +24,7 @@ constexpr double kLeastLoadShare = 1e-4;  // of a load step
 constexpr double kLeastShareOfDeparted = 0.1;
 constexpr double kFalling = 0.1;  // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
-constexpr int kMostInStep = 20, kMostOfAll = 10000, kMostHalvings = 6, kMostShortened = 12,
+constexpr int kMostInStep = 20, kMostOfAll = 2000, kMostHalvings = 6, kMostShortened = 12,
               kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
