@@ -27,7 +27,7 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
       table_(std::move(table)),
       friction_law_(law.friction_law),
       tangential_(table_.rough() || table_.damped()),
-      dashpots_(surfaces_.rigid_count(), threads) {
+      dashpots_(surfaces_.rigid_count()) {
   std::array<bool, kernel_kinds> needed{};
   needed[polygon_kernel] = surfaces_.rigid_count() > 0;
   needed[element_kernel] = surfaces_.elements().size() > 0;

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 namespace apothem {
 namespace {
 
 constexpr int kMostPasses = 100;
-constexpr double kRelaxTime = 30;           // ns
-constexpr std::uint32_t kUsualLayers = 16;  // in piles of polygons
 constexpr double kAgree = 1e-6;  // tolerance relative to the largest impulse, or to the elastic
                                  // normal impulse of the step
 
@@ -162,7 +158,7 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
     const size_t c = moved.coordinate;
     const double w = motion.inverse_mass[c], g = motion.weight.empty() ? 0 : motion.weight[c];
     moved.kick = dt / 2 * w * (motion.before[c] + motion.after[c] + 2 * g);
-    moved.reach = moved.force = 0, moved.layer = 0;
+    moved.reach = moved.force = 0;
     moving_[i].inverse_mass = w;
   }
   for (const Motion::Rail& rail : motion.rails) put_on(rail);
@@ -231,36 +227,6 @@ void Dashpots::find_gains() {
   }
 }
 
-// The dashpots of contacts that share no body do not depend on each other. Each contact gets a
-// layer above those of the contacts before it that share a body with it. Layer by layer the result
-// is the same to the last bit as contact by contact, but threads can share the work. Where that
-// does not pay, all contacts are one layer, in their order.
-void Dashpots::find_order() {
-  layer_of_.resize(dashpots_.size()), order_.resize(dashpots_.size());
-  ends_.clear();
-  const auto all = static_cast<std::uint32_t>(dashpots_.size());
-  if (!threads_.worth(static_cast<int>(all / kUsualLayers), kRelaxTime)) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    ends_.push_back(all);
-    return;
-  }
-  for (size_t i = 0; i < dashpots_.size(); ++i) {
-    std::uint32_t layer = 0;
-    for (const Entry& e : entries(i)) {
-      if (moving_[e.moved].inverse_mass > 0) layer = std::max(layer, moved_[e.moved].layer);
-    }
-    for (const Entry& e : entries(i)) moved_[e.moved].layer = layer + 1;
-    layer_of_[i] = layer;
-    if (layer == ends_.size()) ends_.push_back(0);
-    ++ends_[layer];
-  }
-  std::uint32_t sum = 0;
-  for (std::uint32_t& end : ends_) sum += std::exchange(end, sum);  // now where each one begins
-  for (size_t i = 0; i < dashpots_.size(); ++i) {
-    order_[ends_[layer_of_[i]]++] = static_cast<std::uint32_t>(i);
-  }
-}
-
 // Solves for the dashpots of one contact with all others fixed. Returns the largest change of an
 // impulse, N s.
 double Dashpots::relax(size_t i, double dt) {
@@ -300,7 +266,6 @@ double Dashpots::relax(size_t i, double dt) {
   set(2, std::clamp(free(2, behind), -limit - spring, limit - spring));
   for (const Entry& e : all) {
     Moving& moving = moving_[e.moved];
-    if (!(moving.inverse_mass > 0)) continue;  // other threads may read it
     moving.velocity += moving.inverse_mass *
                        (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
   }
@@ -308,27 +273,14 @@ double Dashpots::relax(size_t i, double dt) {
 }
 
 Dashpots::Pass Dashpots::relax_all(bool forwards, double dt) {
-  for (Pass& worker : workers_) worker = {};
-  for (size_t nth = 0; nth < ends_.size(); ++nth) {
-    const size_t layer = forwards ? nth : ends_.size() - 1 - nth;
-    const std::uint32_t begin = layer == 0 ? 0 : ends_[layer - 1], last = ends_[layer] - 1;
-    const double each = ends_.size() > 1 ? kRelaxTime : 0;  // a layer of all is not divided
-    threads_.chunks(static_cast<int>(ends_[layer] - begin), each,
-                    [&](int first, int end, int number) {
-                      Pass pass;
-                      for (int n = first; n < end; ++n) {
-                        const auto k = static_cast<std::uint32_t>(n);
-                        const size_t i = order_[forwards ? begin + k : last - k];
-                        const double change = relax(i, dt);
-                        const std::array<Along, 3>& along = solved_[i].along;
-                        pass.add({change, std::abs(along[0].impulse + along[1].impulse)});
-                      }
-                      workers_[static_cast<size_t>(number)].add(pass);
-                    });
+  Pass pass;
+  for (size_t k = 0; k < dashpots_.size(); ++k) {
+    const size_t i = forwards ? k : dashpots_.size() - 1 - k;
+    pass.change = std::max(pass.change, relax(i, dt));
+    const std::array<Along, 3>& along = solved_[i].along;
+    pass.largest = std::max(pass.largest, std::abs(along[0].impulse + along[1].impulse));
   }
-  Pass all;
-  for (const Pass& worker : workers_) all.add(worker);
-  return all;
+  return pass;
 }
 
 void Dashpots::solve(const Motion& motion, double dt) {
@@ -336,7 +288,6 @@ void Dashpots::solve(const Motion& motion, double dt) {
   find_kicks(motion, dt);
   find_rates(dt);
   find_gains();
-  find_order();
   double pressed = 0;
   for (const Dashpot& dashpot : dashpots_) {
     pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);

@@ -30,7 +30,6 @@
 #include "geometry/polygon/point.hpp"
 #include "lib/archive/archive.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
-#include "lib/execution/parallel.hpp"
 #include "lib/mesh/indices.hpp"
 
 namespace apothem {
@@ -94,10 +93,7 @@ class Dashpots {
     std::span<const Rail> rails = {};
   };
 
-  explicit Dashpots(int rigid_bodies, int threads = 1)
-      : nodes_(3 * static_cast<size_t>(rigid_bodies)),
-        threads_(threads),
-        workers_(static_cast<size_t>(threads_.count())) {}
+  explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
 
   /// Removes all contacts. Every step adds its contacts again, always in the same order.
   void clear();
@@ -151,7 +147,6 @@ class Dashpots {
     double kick = 0;        // change of velocity by all other forces over this step
     double reach = 0;       // impulse per velocity of all its dashpots together, N s/(m/s)
     double force = 0;
-    std::uint32_t layer = 0;  // layer after the last one of its dashpots, see find_order
 
     // The ledger needs these values of the step before.
     void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
@@ -186,30 +181,21 @@ class Dashpots {
   // The largest change and the largest normal impulse in a pass over contacts, N s.
   struct Pass {
     double change = 0, largest = 0;
-    void add(const Pass& other) {
-      change = std::max(change, other.change), largest = std::max(largest, other.largest);
-    }
   };
   [[nodiscard]] std::span<const Entry> entries(size_t i) const;
   void find_kicks(const Motion& motion, double dt);
   void find_rates(double dt);
   void find_gains();
-  void find_order();
   double relax(size_t i, double dt);
   Pass relax_all(bool forwards, double dt);
   void sum_forces(const Motion& motion, double dt);
 
   size_t nodes_;  // the first coordinate of a node
-  Threads threads_;
-  std::vector<Pass> workers_;
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
   std::vector<Moved> moved_;             // coordinates in the order in which they were first added
   std::vector<Moving> moving_;           // the same coordinates while solving
-  std::vector<std::uint32_t> order_;     // the contacts in the order of their layers
-  std::vector<std::uint32_t> layer_of_;  // layer of each contact
-  std::vector<std::uint32_t> ends_;      // end of each layer in order_
   std::vector<std::uint32_t> index_;     // index of every coordinate in moved_, or kNone
   std::vector<Entry> across_rails_;      // parts of entries across the rails of bodies
   std::vector<std::uint32_t> of_these_;  // the contact of each of these parts

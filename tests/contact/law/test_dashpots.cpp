@@ -249,44 +249,6 @@ TEST_CASE("dashpots at corners and at flats that part take energy", "[damping]")
   }
 }
 
-TEST_CASE("dashpots have the same bits for any number of threads", "[damping][threads]") {
-  // So many that several threads share most layers. Node 0 does not move.
-  SeededRandom random(29);
-  constexpr int nodes = 12000, contacts = 2 * nodes;
-  std::vector<double> inverse_mass, velocity, force;
-  for (int i = 0; i < nodes; ++i) {
-    const double w = i == 0 ? 0 : std::pow(10, random.uniform(-1, 1));
-    inverse_mass.insert(inverse_mass.end(), {w, w});
-    velocity.insert(velocity.end(), {random.uniform(-1, 1), random.uniform(-1, 1)});
-    force.insert(force.end(), {random.uniform(-1, 1), random.uniform(-1, 1)});
-  }
-  std::vector<Dashpots> all;
-  for (const int threads : {1, 2, 5}) all.emplace_back(0, threads);
-  for (int i = 0; i < contacts; ++i) {
-    const double angle = random.uniform(-3, 3), stiffness = random.uniform(1, 10);
-    const Vec2 normal(std::cos(angle), std::sin(angle)), along(-normal.y(), normal.x());
-    Dashpot dashpot{0, 1, normal, {Dashpot::Normal::of(stiffness, 1, 1, random.uniform(1, 2))}, 1};
-    dashpot.limit.coefficient = .3;
-    const int a = random.integer(0, nodes - 1),
-              b = random.integer(0, 9) == 0 ? 0 : random.integer(1, nodes - 1);
-    for (Dashpots& dashpots : all) {
-      dashpots.add(dashpot);
-      dashpots.add_node(a, normal, along);
-      if (b != a) dashpots.add_node(b, -normal, -along);
-    }
-  }
-  for (Dashpots& dashpots : all) dashpots.solve({inverse_mass, velocity, force, force, {}}, .1);
-  int different = 0;
-  for (size_t i = 0; i < all[0].size(); ++i) {
-    for (const Dashpots& other : all) {
-      different += other.normal_force(i) != all[0].normal_force(i);
-      different += other.tangential_force(i) != all[0].tangential_force(i);
-    }
-  }
-  CHECK(all[0].size() == static_cast<size_t>(contacts));
-  CHECK(different == 0);
-}
-
 TEST_CASE("chains of masses with dashpots of any strength do not grow", "[damping]") {
   // So much presses that the dashpots are content with one pass.
   samples::Random random(5);
