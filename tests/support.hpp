@@ -28,6 +28,10 @@ inline int scaled(int cases) {
   return std::max(1, cases / divisor);
 }
 
+/// How many of the random cases a test asks to be of the kind that it is about. Under the
+/// sanitizers, which take too few cases for a share of them to say anything, no number fails.
+inline int least(int cases) { return kSanitized ? -1 : cases; }
+
 /// APOTHEM_SEED in the environment, a whole number, chooses other random cases: 0 without it.
 inline std::uint64_t chosen_seed() {
   const char* const text = std::getenv("APOTHEM_SEED");

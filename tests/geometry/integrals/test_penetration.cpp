@@ -132,7 +132,7 @@ TEST_CASE("penetrations agree with many points on the exact overlap", "[penetrat
     CHECK(penetration(samples::shifted(a, far), samples::shifted(b, far)) ==
           Approx(found).margin(1e-9));
   }
-  CHECK(touching > scaled(300) / 3);
+  CHECK(touching > least(scaled(300) / 3));
 }
 
 TEST_CASE("what the potential measures bounds the penetration from both sides", "[penetration]") {

@@ -209,7 +209,7 @@ TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distan
       }
     }
   }
-  CHECK(touching > test::scaled(150));
+  CHECK(touching > test::least(test::scaled(150)));
 }
 
 TEST_CASE("energy of the distance field against quadrature over lines", "[distance-field]") {

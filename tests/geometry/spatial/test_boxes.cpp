@@ -73,7 +73,7 @@ TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes
       REQUIRE(found == expected);
     }
   }
-  CHECK(few > test::scaled(300));
+  CHECK(few > test::least(test::scaled(300)));
 }
 
 TEST_CASE("boxes far away and without end are found, and the others as fast", "[boxes]") {
