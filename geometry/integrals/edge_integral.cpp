@@ -16,11 +16,23 @@ namespace apothem {
 
 using namespace edge_detail;
 
+namespace {
+
+bool serve_as_windows(const PlacedPotential& a, const PlacedPotential& b) {
+  return std::max(a.size, b.size) > ConvexPairs::kMostSides && ConvexWindow::serves(a) &&
+         ConvexWindow::serves(b);
+}
+
+}  // namespace
+
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near) {
   if (ConvexPairs::serves(a) && ConvexPairs::serves(b)) {
     workspace.convex.add(a, b, offset, near);
     return workspace.convex.evaluate()[0];
+  }
+  if (serve_as_windows(a, b)) {
+    if (const auto pair = windowed_integral(a, b, offset, near, workspace)) return *pair;
   }
   const auto nothing = [](const auto&...) {};
   return integrate_pair<false>(a, b, offset, near, workspace, nothing, nothing);
@@ -232,8 +244,16 @@ struct ClippedPair {
 
 double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                    OverlapEnergy& memory) {
-  return a.convex() && b.convex() ? memory.of_convex(a, b, offset)
-                                  : ClippedPair(a, b, offset).energy();
+  if (!a.convex() || !b.convex()) return ClippedPair(a, b, offset).energy();
+  if (serve_as_windows(a, b)) {
+    NearEdges near;
+    EdgeWorkspace& edges = memory.edges();
+    if (const auto pair = windowed_integral(a, b, offset, near, edges)) {
+      const ConvexWindows& windows = edges.windows;
+      return pair->touching() ? memory.of_convex(windows.a.view(), windows.b.view(), offset) : 0;
+    }
+  }
+  return memory.of_convex(a, b, offset);
 }
 
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "geometry/integrals/convex_pairs.hpp"
+#include "geometry/integrals/convex_window.hpp"
 #include "geometry/integrals/layer_pair.hpp"
 #include "geometry/integrals/layer_trace.hpp"
 #include "geometry/integrals/near_edges.hpp"
@@ -39,6 +40,7 @@ struct EdgeWorkspace {
   LayerTrace layer_trace;          ///< memory for the boundary layers of both
   LayerPair layer_pair;            ///< memory for pairs with few near edges
   ConvexPairs convex;              ///< memory for pairs of convex polygons with few sides
+  ConvexWindows windows;           ///< memory for pairs of convex polygons with many sides
 };
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if that

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "geometry/integrals/edge_integral.hpp"
 #include "geometry/integrals/placed_potential.hpp"
 #include "geometry/potential/lower_envelope.hpp"
 
@@ -19,6 +20,8 @@ class OverlapEnergy {
   /// INT_{a AND b} (phi_a + phi_b) dA, m^2. Both polygons are convex and have no distance field;
   /// the arguments are those of pair_integral.
   double of_convex(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
+  /// Memory of the pair's force, from which the energy of many-sided polygons takes the windows.
+  EdgeWorkspace& edges() { return edges_; }
 
   /// INT phi_p dA over a ring inside p, m^2. p is convex and moved by `shift`.
   double volume_under(const PlacedPotential& p, const Vec2& shift, const std::vector<Vec2>& ring);
@@ -32,6 +35,7 @@ class OverlapEnergy {
   std::vector<Vec2> overlap_, part_, ring_;
   std::vector<Line> lines_, lowest_;
   lower_envelope::Memory<double> faces_;
+  EdgeWorkspace edges_;
 };
 
 }  // namespace apothem

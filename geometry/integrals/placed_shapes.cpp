@@ -4,10 +4,34 @@
 
 #include "geometry/integrals/penetration.hpp"
 #include "geometry/polygon/cyclic.hpp"
+#include "lib/execution/dispatch.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {
+
+constexpr int kManyVertices = 32;  // from this number on they are rotated by packs
+
+// Rotates as many of n vectors as fill packs, and includes them in the box. Returns their number.
+template <int lanes>
+APOTHEM_INLINE int rotate_packs(const double* from, int n, const SineCosine& angle, double* to_x,
+                                double* to_y, Box& box) {
+  using Pack = PackOf<lanes>;
+  const Pack s(angle.sine), c(angle.cosine);
+  Pack x0(box.x0), y0(box.y0), x1(box.x1), y1(box.y1);
+  int k = 0;
+  for (; k + lanes <= n; k += lanes) {
+    const Pack from_x = Pack::load(from + k), from_y = Pack::load(from + n + k);
+    const Pack x = c * from_x - s * from_y, y = s * from_x + c * from_y;
+    x.store(to_x + k), y.store(to_y + k);
+    x0 = select(x < x0, x, x0), x1 = select(x1 < x, x, x1);
+    y0 = select(y < y0, y, y0), y1 = select(y1 < y, y, y1);
+  }
+  for (int lane = 0; lane < lanes; ++lane) {
+    box.include(Box{x0.v[lane], y0.v[lane], x1.v[lane], y1.v[lane]});
+  }
+  return k;
+}
 
 // A point in the frame of the edge from `v` to `w`: its components along and across the edge,
 // divided by the length of the edge.
@@ -61,22 +85,30 @@ Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle,
   const double s = angle.sine, c = angle.cosine;
   const int n = shape.size;
   const auto turn = [&](const double* from, double* to_x, double* to_y) {
-    for (int k = 0; k < n; ++k) {
+    Box box;
+    int k = 0;
+    if (n >= kManyVertices) {
+      with_widest([&](auto lanes) APOTHEM_LAMBDA {
+        k = rotate_packs<lanes()>(from, n, angle, to_x, to_y, box);
+        return 0.;
+      });
+    }
+    for (; k < n; ++k) {
       to_x[k] = c * from[k] - s * from[n + k];
       to_y[k] = s * from[k] + c * from[n + k];
+      box.include(to_x[k], to_y[k]);
     }
     to_x[n] = to_x[0];
     to_y[n] = to_y[0];
-    if (!shape.layer) return;
-    to_x[-1] = to_x[n - 1];
-    to_y[-1] = to_y[n - 1];
+    if (shape.layer) {
+      to_x[-1] = to_x[n - 1];
+      to_y[-1] = to_y[n - 1];
+    }
+    return box;
   };
   const double* const body = body_.data() + 4 * shape.edges;
-  turn(body, target.x, target.y);
   turn(body + std::ptrdiff_t{2} * n, target.gx, target.gy);
-  Box box;
-  for (int k = 0; k < n; ++k) box.include(target.x[k], target.y[k]);
-  return box;
+  return turn(body, target.x, target.y);
 }
 
 void PlacedShapes::place(int i, double x, double y, const SineCosine& angle) {

@@ -9,6 +9,7 @@
 #include "geometry/integrals/edge_integral.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
 #include "geometry/potential/potential.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 
@@ -110,6 +111,75 @@ TEST_CASE("convex pairs have the same bits many at a time, alone, and edge by ed
   }
   CHECK(touching > 1000);
   CHECK(apart > 300);
+}
+
+namespace {
+
+// A convex polygon with 17 to 2 048 sides, up to a hundred times as long as wide, or a square.
+Potential many_sided(samples::Random& random, bool square) {
+  const int sides = square ? 4 : static_cast<int>(std::exp2(random.uniform(4.1, 11)));
+  std::vector<Vec2> vertices = random.integer(0, 2) == 0 && sides < 200
+                                   ? samples::random_convex(random, sides).vertices()
+                                   : samples::regular(sides).vertices();
+  const double width = std::pow(10, random.uniform(-2, 0));
+  for (Vec2& v : vertices) v.y() *= width;
+  return make_potential(samples::turned(Polygon(vertices), random.uniform(0, 6)));
+}
+
+// The vertex that is farthest in a direction.
+Vec2 farthest(const PlacedPotential& p, const Vec2& direction) {
+  Vec2 best(p.x[0], p.y[0]);
+  for (int v = 1; v < p.size; ++v) {
+    if (const Vec2 q(p.x[v], p.y[v]); q.dot(direction) > best.dot(direction)) best = q;
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("windows of polygons with many sides have the bits of the polygons", "[convex]") {
+  test::SeededRandom random(13);
+  EdgeWorkspace workspace;
+  const int cases = test::scaled(2000);
+  int shallow = 0, shallow_by_windows = 0, apart = 0, apart_by_windows = 0;
+  for (int i = 0; i < cases; ++i) {
+    const Potential potential_a = many_sided(random, false);
+    const Potential potential_b = many_sided(random, random.integer(0, 2) == 0);
+    PlacedShapes shapes;
+    shapes.add(potential_a), shapes.add(potential_b);
+    shapes.place(0, 0, 0, random.uniform(0, 6)), shapes.place(1, 0, 0, random.uniform(0, 6));
+    PlacedPotential a = shapes.view(0), b = shapes.view(1);
+    const double angle = random.uniform(0, 6);
+    const Vec2 normal(std::cos(angle), std::sin(angle));
+    const double depth = std::pow(10, random.uniform(-9, 0)) / std::max(a.steepest, b.steepest);
+    const double by = random.integer(0, 3) == 0 ? -depth : depth;
+    const Vec2 offset = farthest(b, normal) - farthest(a, -normal) - by * normal;
+    CAPTURE(i, a.size, b.size, by);
+    if (a.radius > 3.9 * b.radius || b.radius > 3.9 * a.radius) continue;  // edges are shortened
+    NearEdges near, swapped;
+    const auto found = windowed_integral(a, b, offset, near, workspace);
+    const auto found_swapped = windowed_integral(b, a, -offset, swapped, workspace);
+    // Without a radius nothing is known of the size.
+    a.radius = b.radius = 0;
+    REQUIRE(!ConvexWindow::serves(a));
+    const PairIntegral whole = pair_integral(a, b, offset, workspace);
+    if (found) check_same(*found, whole);
+    if (found && found_swapped) {
+      CHECK(found_swapped->force == -whole.force);
+      CHECK(found_swapped->moment_a == whole.moment_b);
+    }
+    if (whole.touching()) {
+      const bool is_shallow = whole.largest_phi < 1e-4;
+      shallow += is_shallow;
+      shallow_by_windows += is_shallow && found;
+    } else {
+      ++apart;
+      apart_by_windows += found.has_value();
+      if (found) CHECK((near.none() && near.skin > 0 && near.skin <= std::abs(by) * (1 + 1e-9)));
+    }
+  }
+  CHECK(shallow_by_windows > test::least(shallow * 2 / 3));
+  CHECK(apart_by_windows > test::least(apart * 2 / 3));
 }
 
 TEST_CASE("the margin of convex pairs is a bound of their distance", "[convex]") {
