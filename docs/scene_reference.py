@@ -132,7 +132,7 @@ class Reference:
             return "`{ " + ", ".join(f'"{k}"' for k in node["properties"]) + " }`: " + ", ".join(inner)
         if kind in ("number", "integer"):
             return ("number" if kind == "number" else "whole number") + self.bounds(node)
-        return {"string": "text", "boolean": "`true` or `false`"}.get(kind, "not allowed")
+        return {"string": "text", "boolean": "`true` or `false`"}.get(kind, "anything")
 
     def list_of(self, node, pointer):
         items, inner = node["items"], pointer + "/items"
@@ -182,6 +182,8 @@ class Reference:
                       + node.get("description", ""), ""]
         lines += ["| key | value | unit | default | meaning |", "| --- | --- | --- | --- | --- |"]
         for key, value in node["properties"].items():
+            if "not" in value:  # a key of objects of another kind, of which the schema says so
+                continue
             lines.append(self.row(key, value, f"{pointer}/properties/{key}".lstrip("/"),
                                   key in node.get("required", [])))
         return "\n".join(line.rstrip() for line in lines) + "\n"

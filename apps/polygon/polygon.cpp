@@ -8,6 +8,7 @@
 #include "apps/polygon/batch.hpp"
 #include "apps/polygon/input.hpp"
 #include "apps/process/work_line.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 #include "lib/output/files.hpp"
@@ -146,6 +147,30 @@ std::string places(const Polygon& polygon, const std::vector<Vec2>& points) {
   return points.size() > kListed ? fmt::format("{}, ... ({} in all)", list, points.size()) : list;
 }
 
+// Whether each point of the segment between two centres is a centre: its middle is, too.
+bool is_segment(const Analysis& a, const Vec2& from, const Vec2& to) {
+  const Vec2 middle = (from + to) / 2;
+  double depth = HUGE_VAL;
+  for (const std::vector<Vec2>& ring : rings_of(a.polygon)) {
+    depth = std::min(depth, distance_to_ring(ring, middle));
+  }
+  return depth > a.circle.radius * (1 - 1e-9);
+}
+
+// Isolated centres, and segments of centres, whose ends stand one after the other.
+std::string centres(const Analysis& a) {
+  const std::vector<Vec2>& all = a.circle.centres;
+  std::string text;
+  for (size_t i = 0, shown = 0; i < all.size() && shown < kListed; ++i, ++shown) {
+    text += (i == 0 ? "" : ", ") + place(a.polygon, all[i]);
+    if (i + 1 < all.size() && is_segment(a, all[i], all[i + 1])) {
+      text += " to " + place(a.polygon, all[++i]);
+    }
+  }
+  return all.size() > kListed ? fmt::format("{} m, ... ({} places in all)", text, all.size())
+                              : text + " m";
+}
+
 void print_table(const Analysis& a, const std::string& reference_name) {
   const auto row = [](const char* name, const std::string& value) {
     fmt::print("{:<17} {}\n", name, value);
@@ -157,13 +182,14 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   row("centroid", place(a.polygon, a.moments.centroid) + " m");
   row("polar moment", fmt::format("{} m^4, about the centroid", a.moments.polar));
   row("inradius", fmt::format("{} m", a.circle.radius));
-  row("incircle centres",
-      places(a.polygon, a.circle.centres) +
-          (a.circle.centres.size() > 1 ? " m, single ones or the two ends of a line of centres"
-                                       : " m"));
+  row("incircle centres", centres(a));
   row("roof height", fmt::format("{} m", a.skeleton.roof_height));
   row("reference length", fmt::format("{} m ({})", a.reference, reference_name));
-  row("singular area", kind_name(a.singular.kind()));
+  const bool beyond = a.reference > a.skeleton.roof_height;
+  row("singular area", kind_name(a.singular.kind()) +
+                           std::string(beyond ? ": the roof does not reach the reference length, "
+                                                "and phi stays below 1"
+                                              : ""));
   if (!a.singular.polygons.empty()) {
     row("  polygons",
         fmt::format("{}, area {} m^2", a.singular.polygons.size(), a.singular.area()));
@@ -178,8 +204,11 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   if (!a.singular.points.empty()) row("  points", places(a.polygon, a.singular.points) + " m");
   row("faces", fmt::format("{}", a.polygon.size()));
   row("skeleton",
-      fmt::format("in {}, {} attempt{}", a.skeleton.exact ? "exact arithmetic" : "double precision",
-                  a.skeleton.attempts, a.skeleton.attempts == 1 ? "" : "s"));
+      fmt::format("in {}{}", a.skeleton.exact ? "exact arithmetic" : "double precision",
+                  a.skeleton.attempts == 1
+                      ? ""
+                      : fmt::format(", at the {}. attempt, with vertices moved by round-off",
+                                    a.skeleton.attempts)));
 }
 
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {

@@ -9,6 +9,7 @@
 #include "apps/run/plan_json.hpp"
 #include "lib/run/cost.hpp"
 #include "lib/run/run.hpp"
+#include "lib/run/warnings.hpp"
 
 namespace apothem {
 namespace {
@@ -55,16 +56,17 @@ void say_imports(const Scene& scene) {
 void say_step(const Scene& scene, const Simulation& simulation) {
   const StepChoice& choice = simulation.step_choice();
   const bool phases = scene.time.scheme == TimeScheme::automatic;
-  say("run", fmt::format("{:g} s in {}{:.0f} steps", scene.time.end, phases ? "at most " : "",
-                         std::ceil(scene.time.end / choice.step)));
   if (scene.time.statics) {
     const std::string count = scene.time.automatic_load_steps
                                   ? "load steps of automatic size, as far as the loads can grow"
                                   : fmt::format("{} load steps", scene.time.load_steps);
-    say("static", fmt::format("{}, tolerance {:g}{}", count, scene.time.tolerance,
-                              scene.rigid ? "; in the limit of rigid bodies" : ""));
+    say("run",
+        fmt::format("static, {:g} s in {}, tolerance {:g}{}", scene.time.end, count,
+                    scene.time.tolerance, scene.rigid ? "; in the limit of rigid bodies" : ""));
     return;
   }
+  say("run", fmt::format("{:g} s in {}{:.0f} steps", scene.time.end, phases ? "at most " : "",
+                         std::ceil(scene.time.end / choice.step)));
   const bool by_elements = choice.limit.reason.starts_with("elements");
   const TimeSettings& time = scene.time;
   std::string how = "fixed";
@@ -89,26 +91,38 @@ std::string duration(double seconds) {
                           : fmt::format("{:.2g} days", seconds / 86400);
 }
 
-// A trial sees the contacts of the start only, and no output.
-void say_run_time(const Scene& scene, const Simulation& simulation, const Trial& trial) {
+// A trial sees the contacts of the start only.
+void say_run_time(const Scene& scene, const Simulation& simulation, const Trial& trial,
+                  const OutputCost& cost) {
   if (!trial.message.empty()) {
     say("run time", "none: after a few steps, " + trial.message);
     return;
   }
   const bool phases = scene.time.scheme == TimeScheme::automatic;
-  say("run time", fmt::format("about {} on one thread{}, from {} steps of {:.2g} s of wall clock",
-                              duration(run_seconds(scene, simulation, trial)),
-                              phases ? " if it goes on as it begins" : "", trial.steps,
-                              trial.seconds / static_cast<double>(trial.steps)));
+  const double steps = run_seconds(scene, simulation, trial);
+  say("run time",
+      fmt::format(
+          "about {} on one thread{}: {} of steps, of which {} have taken {:.2g} s each, and "
+          "{} of output",
+          duration(steps + cost.seconds), phases ? " if it goes on as it begins" : "",
+          duration(steps), trial.steps, trial.seconds / static_cast<double>(trial.steps),
+          duration(cost.seconds)));
 }
 
-void say_output(const Scene& scene, bool empty_history) {
+std::string size_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.2g} kB", bytes / 1e3);
+  return bytes < 1e9 ? fmt::format("{:.2g} MB", bytes / 1e6)
+                     : fmt::format("{:.2g} GB", bytes / 1e9);
+}
+
+void say_output(const Scene& scene, bool empty_history, const OutputCost& cost) {
   const OutputSettings& output = scene.output;
   const size_t bodies = output.track.size() + output.track_deformables.size();
   say("output",
       fmt::format("{} frames, histories of {} bodies, {} points and {} regions every {:g} s",
                   output.frames + 1, bodies, output.points.size(), scene.model.regions.size(),
                   output.history_interval));
+  say("", fmt::format("about {:.0f} files and {}", cost.files, size_text(cost.bytes)));
   if (empty_history) {
     say("",
         "history.csv will hold the time alone: name up to a few bodies in output.history.track "
@@ -123,7 +137,8 @@ void say_contact_at_start(const Simulation& simulation) {
   const std::string overlaps = describe_overlaps(simulation);
   say("at t = 0", fmt::format("{} contacts", simulation.counts().touching_now));
   if (!overlaps.empty()) say("overlaps", overlaps);
-  for (const std::string& depth : describe_forecast(simulation)) say("penetration", depth);
+  const std::string depths = describe_forecast(simulation);
+  if (!depths.empty()) say("penetration", depths);
 }
 
 }  // namespace
@@ -136,8 +151,13 @@ int check_command(const CheckOptions& options) {
   const std::unique_ptr<Simulation> simulation = make_simulation(scene, 1);
   std::ranges::move(excessive_costs(scene, steps_of(scene, *simulation)),
                     std::back_inserter(estimates.warnings));
+  if (std::string sentence = rules_in_vain(scene.model, scene.stops, simulation->state());
+      !sentence.empty()) {
+    estimates.warnings.push_back(std::move(sentence));
+  }
+  const OutputCost cost = output_cost(scene, steps_of(scene, *simulation));
   if (options.json) {
-    fmt::print("{}\n", plan_json(scene, *simulation, estimates));
+    fmt::print("{}\n", plan_json(scene, *simulation, estimates, cost));
     return exit_code::done;
   }
   const Model& model = scene.model;
@@ -158,8 +178,8 @@ int check_command(const CheckOptions& options) {
   say_step(scene, *simulation);
   const Phases phases = phases_of(scene, *simulation, estimates.dissipates);
   if (!phases.text.empty()) say("phases", phases.text);
-  if (estimates.trial) say_run_time(scene, *simulation, *estimates.trial);
-  say_output(scene, estimates.empty_history);
+  if (estimates.trial) say_run_time(scene, *simulation, *estimates.trial, cost);
+  say_output(scene, estimates.empty_history, cost);
   say("expects", fmt::format("{} results", scene.expectations.size()));
   say("damping",
       estimates.damped ? "present, see the terms below" : "none: only friction ends a motion");

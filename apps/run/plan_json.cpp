@@ -92,11 +92,14 @@ Json time_step(const Scene& scene, const Simulation& simulation) {
           {"steps", std::ceil(scene.time.end / choice.step)}};
 }
 
-Json output(const OutputSettings& settings) {
+Json output(const OutputSettings& settings, const OutputCost& cost) {
   Json json{{"frames", settings.frames + 1},
             {"tracked_bodies", settings.track.size() + settings.track_deformables.size()},
             {"tracked_points", settings.points.size()},
-            {"history_interval", settings.history_interval}};
+            {"history_interval", settings.history_interval},
+            {"files", cost.files},
+            {"bytes", cost.bytes},
+            {"seconds", cost.seconds}};
   json["checkpoint_interval"] =
       settings.checkpoint_interval ? Json(*settings.checkpoint_interval) : Json();
   return json;
@@ -190,7 +193,7 @@ double run_seconds(const Scene& scene, const Simulation& simulation, const Trial
 }
 
 std::string plan_json(const Scene& scene, const Simulation& simulation,
-                      const PlanEstimates& estimates) {
+                      const PlanEstimates& estimates, const OutputCost& cost) {
   const Model& model = scene.model;
   Json terms = Json::array(), settings = Json::object();
   for (const auto& term : simulation.terms()) terms.push_back(term->describe());
@@ -215,7 +218,7 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
   }
   json["contacts_at_start"] = simulation.counts().touching_now;
   json["terms"] = terms;
-  json["output"] = output(scene.output);
+  json["output"] = output(scene.output, cost);
   if (const Phases phases = phases_of(scene, simulation, estimates.dissipates);
       !phases.text.empty()) {
     json["phases"] = {{"implicit_from_start", phases.from_start}, {"verlet_until", phases.until}};

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/run/cost.hpp"
 #include "lib/run/run.hpp"
 
 namespace apothem {
@@ -32,6 +33,6 @@ double run_seconds(const Scene& scene, const Simulation& simulation, const Trial
 
 /// One object: what the table of `apothem check` says, in full.
 std::string plan_json(const Scene& scene, const Simulation& simulation,
-                      const PlanEstimates& estimates);
+                      const PlanEstimates& estimates, const OutputCost& cost);
 
 }  // namespace apothem

@@ -214,7 +214,7 @@ void ContactTerm::check_drift(const State& state, double dt) {
       fmt::format(
           "body \"{}\" moves {:.3g} m in one step where \"{}\" is in its way, {}, more than a "
           "quarter of {:.3g} m, the smaller inradius of the two: contacts would be missed; "
-          "reduce time.step or time.safety",
+          "reduce the time step",
           name(fault->fast), fault->stride, name(fault->other), at_time(state), fault->length),
       fault->fast < static_cast<BodyIndex>(model_.bodies.size()) ? fault->fast : -1);
 }
@@ -350,7 +350,7 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
       break;
     case Kind::not_convex:
       what += "at an element that is no longer convex and cannot keep its potential";
-      advice = "reduce the load or time.safety, or use \"surface\": \"body\"";
+      advice = "reduce the load or the time step, or use \"surface\": \"body\"";
       break;
   }
   if (state.step == 0) advice = "move them apart";

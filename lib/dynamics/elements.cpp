@@ -133,7 +133,7 @@ void Elements::watch(const State& state) {
   throw Unstable(fmt::format(
       "the element at ({:.6g}, {:.6g}) m of \"{}\" has turned inside out {}: the load is "
       "more than the material can bear, or the step is too long; reduce the load or "
-      "time.safety, or raise time.load_steps",
+      "the time step, or raise time.load_steps",
       centre.x(), centre.y(), model_.deformables[worst.set].name, at_time(state)));
 }
 

@@ -404,7 +404,7 @@ void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool 
   if (verdict == EnergyGuard::Verdict::numerical) {
     throw Unstable(fmt::format(
         "implicit steps have given {:.3g} J back of what they had taken, which is energy out of "
-        "nothing, {}; {:.3g} J are in play: reduce time.step or time.accuracy",
+        "nothing, {}; {:.3g} J are in play: reduce the time step",
         guard_.numerical_fall(), at_time(state_), guard_.in_play()));
   }
   if (verdict != EnergyGuard::Verdict::unaccounted) {
@@ -412,11 +412,11 @@ void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool 
     throw Unstable(fmt::format(
         "{} has given {:.3g} J back of what it had taken, which is energy out of nothing, {}; "
         "{:.3g} J are in play: the step is too long for the {} of these contacts{}; reduce "
-        "{}time.step or time.safety",
+        "{}the time step",
         friction ? "friction" : "damping",
         friction ? guard_.friction_fall() : guard_.damping_fall(), at_time(state_),
         guard_.in_play(), friction ? "friction" : "damping", stiffest,
-        friction ? "contact.friction.tangential_stiffness, " : "contact.damping.ratio, "));
+        friction ? "contact.friction.tangential_stiffness or " : "contact.damping.ratio or "));
   }
   std::string cause = "no bodies touch: the step is too long for what moves them";
   if (touched) {
@@ -426,7 +426,7 @@ void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool 
   }
   throw Unstable(fmt::format(
       "{:.3g} J of the {:.3g} J in play are unaccounted for {}, a tenth is allowed: {}; reduce "
-      "time.step or time.safety",
+      "the time step",
       error, guard_.in_play(), at_time(state_), cause));
 }
 

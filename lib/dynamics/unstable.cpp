@@ -10,7 +10,7 @@ std::string at_time(const State& state) {
 
 void refuse_infinite(const State& state, const std::string& what, RigidIndex body) {
   throw Unstable(fmt::format("the position of {} is not finite {}: the run has become unstable; "
-                             "reduce time.step or time.safety",
+                             "reduce the time step",
                              what, at_time(state)),
                  body);
 }

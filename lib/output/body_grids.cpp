@@ -1,11 +1,5 @@
 #include "lib/output/body_grids.hpp"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-
 #include <array>
 #include <numeric>
 
@@ -17,37 +11,29 @@
 namespace apothem {
 namespace {
 
-// Names the components of a symmetric tensor of the plane.
-void name_tensor(vtkDataArray* array) {
-  array->SetComponentName(0, "xx");
-  array->SetComponentName(1, "yy");
-  array->SetComponentName(2, "xy");
-}
-
-// The stresses of elements or nodes as VTK arrays.
+// The stresses of elements or nodes as arrays.
 class StressArrays {
  public:
   StressArrays()
-      : arrays_{doubles("stress", 3), doubles("stress_zz", 1), doubles("principal_stress", 2),
-                doubles("von_mises", 1), doubles("strain_energy_density", 1)} {}
+      : arrays_{GridArray::tensors("stress"),
+                GridArray::numbers("stress_zz"),
+                {.name = "principal_stress", .columns = 2, .parts = {"major", "minor"}},
+                GridArray::numbers("von_mises"),
+                GridArray::numbers("strain_energy_density")} {}
   void add(const CauchyStress& s) {
-    arrays_[0]->InsertNextTuple3(s.xx, s.yy, s.xy);
-    arrays_[1]->InsertNextValue(s.zz);
+    arrays_[0].reals.insert(arrays_[0].reals.end(), {s.xx, s.yy, s.xy});
+    arrays_[1].reals.push_back(s.zz);
     const auto [major, minor] = principal_stresses(s);
-    arrays_[2]->InsertNextTuple2(major, minor);
-    arrays_[3]->InsertNextValue(von_mises(s));
-    arrays_[4]->InsertNextValue(s.energy_density);
+    arrays_[2].reals.insert(arrays_[2].reals.end(), {major, minor});
+    arrays_[3].reals.push_back(von_mises(s));
+    arrays_[4].reals.push_back(s.energy_density);
   }
-  template <class Data>
-  void add_to(Data* data) {
-    name_tensor(arrays_[0]);
-    arrays_[2]->SetComponentName(0, "major");
-    arrays_[2]->SetComponentName(1, "minor");
-    for (const auto& array : arrays_) data->AddArray(array);
+  void move_to(std::vector<GridArray>& arrays) {
+    for (GridArray& array : arrays_) arrays.push_back(std::move(array));
   }
 
  private:
-  std::array<vtkNew<vtkDoubleArray>, 5> arrays_;
+  std::array<GridArray, 5> arrays_;
 };
 
 // The stress at each node: the mean over the elements around it, weighted with their areas.
@@ -69,11 +55,27 @@ std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchySt
   return mean;
 }
 
-vtkSmartPointer<vtkDataArray> array_of(const BodyQuantity& quantity) {
-  if (quantity.kind == BodyQuantity::Kind::count) return integers(quantity.name);
-  vtkSmartPointer<vtkDataArray> array = doubles(quantity.name, quantity.components());
-  if (quantity.kind == BodyQuantity::Kind::tensor) name_tensor(array);
-  return array;
+GridArray array_of(const BodyQuantity& quantity) {
+  switch (quantity.kind) {
+    case BodyQuantity::Kind::count:
+      return GridArray::whole_numbers(quantity.name);
+    case BodyQuantity::Kind::vector:
+      return GridArray::vectors(quantity.name);
+    case BodyQuantity::Kind::tensor:
+      return GridArray::tensors(quantity.name);
+    default:
+      return GridArray::numbers(quantity.name);
+  }
+}
+
+// Adds the value of a quantity.
+void add_value(GridArray& array, const Components& value) {
+  if (array.is_whole) {
+    array.integers.push_back(static_cast<std::int32_t>(value[0]));
+  } else {
+    array.reals.insert(array.reals.end(), value.begin(),
+                       value.begin() + static_cast<std::ptrdiff_t>(array.columns));
+  }
 }
 
 // The bodies of a frame: a rigid one is a cell, and so is an element, or several if it is not
@@ -99,38 +101,42 @@ class BodyGrid {
     }
   }
 
-  vtkNew<vtkUnstructuredGrid> grid() {
-    vtkNew<vtkUnstructuredGrid> grid = grid_of(points_, VTK_POLYGON, cells_);
+  FrameGrid grid() {
     if (!model_.deformables.empty()) {
-      of_cells_.add_to(grid->GetCellData());
-      of_points_.add_to(grid->GetPointData());
+      of_cells_.move_to(grid_.of_cells);
+      of_points_.move_to(grid_.of_points);
     }
-    grid->GetPointData()->AddArray(displacement_);
-    grid->GetPointData()->AddArray(velocity_);
-    for (vtkDataArray* array : of_cells()) grid->GetCellData()->AddArray(array);
-    return grid;
+    for (GridArray* array : {&displacement_, &velocity_}) {
+      grid_.of_points.push_back(std::move(*array));
+    }
+    for (GridArray* array : of_cells()) grid_.of_cells.push_back(std::move(*array));
+    return std::move(grid_);
   }
 
  private:
   // Arrays that grow would take twice the memory.
   void reserve() {
-    vtkIdType points = 0;
-    auto cells = static_cast<vtkIdType>(model_.bodies.size());
-    for (const RigidBody& body : model_.bodies) points += body.potential.size();
-    for (const DeformableBody& body : model_.deformables) {
-      points += static_cast<vtkIdType>(body.mesh.nodes.size());
-      cells += body.mesh.element_count();
+    size_t points = 0, cells = model_.bodies.size();
+    for (const RigidBody& body : model_.bodies) {
+      points += static_cast<size_t>(body.potential.size());
     }
-    points_->Allocate(points);
-    cells_->AllocateEstimate(cells, 4);
-    for (vtkDataArray* array : {displacement_.Get(), velocity_.Get()}) array->Allocate(3 * points);
-    for (vtkDataArray* array : of_cells()) array->Allocate(array->GetNumberOfComponents() * cells);
+    size_t corners = points;
+    for (const DeformableBody& body : model_.deformables) {
+      points += body.mesh.nodes.size();
+      cells += static_cast<size_t>(body.mesh.element_count());
+      corners += 4 * static_cast<size_t>(body.mesh.element_count());
+    }
+    grid_.points.reserve(points);
+    grid_.corners.reserve(corners);
+    grid_.ends.reserve(cells);
+    for (GridArray* array : {&displacement_, &velocity_}) array->reserve(points);
+    for (GridArray* array : of_cells()) array->reserve(cells);
   }
 
   // The arrays that have a value for each cell, but those of stresses in deformable bodies.
-  std::vector<vtkDataArray*> of_cells() {
-    std::vector<vtkDataArray*> arrays{body_, part_, material_, motion_};
-    for (const Quantity& quantity : quantities_) arrays.push_back(quantity.array);
+  std::vector<GridArray*> of_cells() {
+    std::vector<GridArray*> arrays{&body_, &part_, &material_, &motion_};
+    for (Quantity& quantity : quantities_) arrays.push_back(&quantity.array);
     return arrays;
   }
 
@@ -138,7 +144,7 @@ class BodyGrid {
     const RigidBody& body = model_.bodies[i];
     const auto x = frame_.state.pose(i), v = frame_.state.pose_rate(i);
     const Vec2 centre = x.head<2>();
-    const vtkIdType first = points_->GetNumberOfPoints();
+    const auto first = static_cast<std::int32_t>(grid_.points.size());
     for (const Vec2& vertex : body.potential.vertices) {
       const Vec2 arm = turned(vertex, x[2]);
       const Vec2 u = (centre - body.position) + (arm - turned(vertex, body.angle));
@@ -162,7 +168,7 @@ class BodyGrid {
 
   void add_deformable(DeformableIndex i, const CauchyStress* stress) {
     const DeformableBody& body = model_.deformables[i];
-    const vtkIdType first = points_->GetNumberOfPoints();
+    const auto first = static_cast<std::int32_t>(grid_.points.size());
     for (int n = 0; n < static_cast<int>(body.mesh.nodes.size()); ++n) {
       const Vec2 u = frame_.state.node(body.first_node + n);
       add_point(body.mesh.nodes[n] + u, u, frame_.state.node_velocity(body.first_node + n));
@@ -187,8 +193,8 @@ class BodyGrid {
 
   template <class Corners, class PointOf>
   void add_corners(const Corners& corners, const PointOf& point_of) {
-    cells_->InsertNextCell(static_cast<int>(corners.size()));
-    for (const int corner : corners) cells_->InsertCellPoint(point_of(corner));
+    for (const int corner : corners) grid_.corners.push_back(point_of(corner));
+    grid_.end_cell();
   }
 
   // Of the body whose cells are added next.
@@ -200,66 +206,57 @@ class BodyGrid {
   }
 
   void add_point(const Vec2& place, const Vec2& u, const Vec2& v) {
-    displacement_->InsertNextTuple3(u.x(), u.y(), 0);
-    velocity_->InsertNextTuple3(v.x(), v.y(), 0);
-    const Vec2 p = place + model_.origin;
-    points_->InsertNextPoint(p.x(), p.y(), 0);
+    displacement_.add(u);
+    velocity_.add(v);
+    grid_.points.emplace_back(place + model_.origin);
   }
 
   void add_cell(BodyIndex body, size_t part, MaterialIndex material, Motion motion,
                 const CauchyStress& stress) {
-    body_->InsertNextValue(body);
-    part_->InsertNextValue(static_cast<int>(part));
-    material_->InsertNextValue(material);
-    motion_->InsertNextValue(static_cast<int>(motion));
+    body_.integers.push_back(body);
+    part_.integers.push_back(static_cast<std::int32_t>(part));
+    material_.integers.push_back(material);
+    motion_.integers.push_back(static_cast<std::int32_t>(motion));
     if (!model_.deformables.empty()) of_cells_.add(stress);
-    for (const Quantity& quantity : quantities_) {
-      quantity.array->InsertNextTuple(quantity.value.data());
-    }
+    for (Quantity& quantity : quantities_) add_value(quantity.array, quantity.value);
   }
 
   // One of kBodyQuantities.
   struct Quantity {
     const BodyQuantity* of;
-    vtkSmartPointer<vtkDataArray> array;
+    GridArray array;
     Components value;  // of the body at hand
   };
 
   const Model& model_;
   const FrameContents& frame_;
   const std::map<RigidIndex, Cells>& rigid_cells_;
-  vtkNew<vtkPoints> points_ = double_points();
-  vtkNew<vtkCellArray> cells_;
-  vtkNew<vtkIntArray> body_ = integers("body");
-  vtkNew<vtkIntArray> part_ = integers("part");
-  vtkNew<vtkIntArray> material_ = integers("material");
-  vtkNew<vtkIntArray> motion_ = integers("motion");  // as the enumeration Motion counts
-  vtkNew<vtkDoubleArray> displacement_ = doubles("displacement", 3);
-  vtkNew<vtkDoubleArray> velocity_ = doubles("velocity", 3);
+  FrameGrid grid_;
+  GridArray body_ = GridArray::whole_numbers("body"), part_ = GridArray::whole_numbers("part");
+  GridArray material_ = GridArray::whole_numbers("material");
+  GridArray motion_ = GridArray::whole_numbers("motion");  // as the enumeration Motion counts
+  GridArray displacement_ = GridArray::vectors("displacement");
+  GridArray velocity_ = GridArray::vectors("velocity");
   std::vector<Quantity> quantities_;
   StressArrays of_cells_, of_points_;
 };
 
 }  // namespace
 
-vtkNew<vtkUnstructuredGrid> body_grid(const Model& model, const FrameContents& frame,
-                                      const std::map<RigidIndex, Cells>& rigid_cells) {
+FrameGrid body_grid(const Model& model, const FrameContents& frame,
+                    const std::map<RigidIndex, Cells>& rigid_cells) {
   return BodyGrid(model, frame, rigid_cells).grid();
 }
 
-vtkNew<vtkUnstructuredGrid> outline_grid(const Model& model, const State& state,
-                                         const std::vector<Cells>& loops) {
-  vtkNew<vtkPoints> points = double_points();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> of_cells = integers("body");
+FrameGrid outline_grid(const Model& model, const State& state, const std::vector<Cells>& loops) {
+  FrameGrid grid{FrameGrid::Kind::lines};
+  GridArray of_cells = GridArray::whole_numbers("body");
   const auto add = [&](BodyIndex body, size_t corners, const auto& place_of) {
-    const vtkIdType first = points->GetNumberOfPoints();
+    const auto first = static_cast<std::int32_t>(grid.points.size());
     for (size_t i = 0; i < corners; ++i) {
-      const Vec2 p = place_of(i) + model.origin;
-      points->InsertNextPoint(p.x(), p.y(), 0);
-      cells->InsertNextCell(
-          {first + static_cast<vtkIdType>(i), first + static_cast<vtkIdType>((i + 1) % corners)});
-      of_cells->InsertNextValue(body);
+      const std::int32_t point = grid.add_point(place_of(i) + model.origin);
+      grid.add_cell({point, i + 1 < corners ? point + 1 : first});
+      of_cells.integers.push_back(body);
     }
   };
   const auto rigid = static_cast<RigidIndex>(model.bodies.size());
@@ -281,7 +278,8 @@ vtkNew<vtkUnstructuredGrid> outline_grid(const Model& model, const State& state,
       });
     }
   }
-  return grid_of(points, VTK_LINE, cells, {of_cells});
+  grid.of_cells = {std::move(of_cells)};
+  return grid;
 }
 
 }  // namespace apothem

@@ -1,64 +1,46 @@
 #include "lib/output/contact_grids.hpp"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-
 #include "lib/model/patch_quantities.hpp"
 
 namespace apothem {
 
-vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
-                                            const std::vector<ContactRecord>& contacts) {
-  vtkNew<vtkPoints> points = double_points();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> a = integers("body_a");
-  vtkNew<vtkIntArray> b = integers("body_b");
+FrameGrid contact_patches(const Model& model, const std::vector<ContactRecord>& contacts) {
+  FrameGrid grid{FrameGrid::Kind::points};
+  GridArray a = GridArray::whole_numbers("body_a"), b = GridArray::whole_numbers("body_b");
   for (const ContactRecord& contact : contacts) {
-    const Vec2 p = contact.point + model.origin;
-    cells->InsertNextCell(1);
-    cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
-    a->InsertNextValue(contact.a);
-    b->InsertNextValue(contact.b);
+    grid.add_cell({grid.add_point(contact.point + model.origin)});
+    a.integers.push_back(contact.a);
+    b.integers.push_back(contact.b);
   }
-  vtkNew<vtkUnstructuredGrid> grid = grid_of(points, VTK_VERTEX, cells);
-  grid->GetPointData()->AddArray(a);
-  grid->GetPointData()->AddArray(b);
+  grid.of_points = {std::move(a), std::move(b)};
   for (const PatchQuantity& quantity : kPatchQuantities) {
     if (!quantity.in_frames) continue;
-    vtkNew<vtkDoubleArray> values = doubles(quantity.in_frames, quantity.is_vector ? 3 : 1);
+    GridArray& values =
+        grid.of_points.emplace_back(quantity.is_vector ? GridArray::vectors(quantity.in_frames)
+                                                       : GridArray::numbers(quantity.in_frames));
+    values.reserve(contacts.size());
     for (const ContactRecord& contact : contacts) {
       const Vec2 value = quantity.value(contact);
-      if (quantity.is_vector) {
-        values->InsertNextTuple3(value.x(), value.y(), 0);
-      } else {
-        values->InsertNextValue(value.x());
-      }
+      quantity.is_vector ? values.add(value) : values.reals.push_back(value.x());
     }
-    grid->GetPointData()->AddArray(values);
   }
   return grid;
 }
 
-vtkNew<vtkUnstructuredGrid> contact_surfaces(const Model& model,
-                                             const std::vector<SurfaceRecord>& surfaces) {
-  vtkNew<vtkPoints> points = double_points();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> body = integers("body");
-  vtkNew<vtkDoubleArray> pressure = doubles("contact_pressure", 1);
-  vtkNew<vtkDoubleArray> traction = doubles("tangential_traction", 1);
+FrameGrid contact_surfaces(const Model& model, const std::vector<SurfaceRecord>& surfaces) {
+  FrameGrid grid{FrameGrid::Kind::lines};
+  GridArray body = GridArray::whole_numbers("body");
+  GridArray pressure = GridArray::numbers("contact_pressure");
+  GridArray traction = GridArray::numbers("tangential_traction");
   for (const SurfaceRecord& surface : surfaces) {
-    cells->InsertNextCell(2);
-    for (const Vec2& end : {surface.from, surface.to}) {
-      const Vec2 p = end + model.origin;
-      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
-    }
-    body->InsertNextValue(surface.body);
-    pressure->InsertNextValue(surface.pressure);
-    traction->InsertNextValue(surface.traction);
+    const std::int32_t from = grid.add_point(surface.from + model.origin);
+    grid.add_cell({from, grid.add_point(surface.to + model.origin)});
+    body.integers.push_back(surface.body);
+    pressure.reals.push_back(surface.pressure);
+    traction.reals.push_back(surface.traction);
   }
-  return grid_of(points, VTK_LINE, cells, {body, pressure, traction});
+  grid.of_cells = {std::move(body), std::move(pressure), std::move(traction)};
+  return grid;
 }
 
 }  // namespace apothem

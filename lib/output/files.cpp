@@ -45,6 +45,16 @@ const char* remedy(int error_number) {
   }
 }
 
+// What the system says, and what would help.
+std::string reason_of(const std::string& file, int error_number) {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (error_number == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored)) {
+    return "there is no folder \"" + folder.string() + "\"; make it, or choose another one";
+  }
+  return std::string(std::strerror(error_number)) + remedy(error_number);
+}
+
 // Whether the name is that of a device or a pipe, as /dev/null. A new file would take its place.
 bool is_device(const std::string& file) {
   std::error_code ignored;
@@ -97,8 +107,7 @@ SystemFailure::SystemFailure(const std::string& file, const std::string& reason)
     : std::runtime_error(file + ": " + reason) {}
 
 SystemFailure::SystemFailure(const std::string& file, int error_number)
-    : std::runtime_error(file + ": cannot be written: " + std::strerror(error_number) +
-                         remedy(error_number)) {}
+    : std::runtime_error(file + ": cannot be written: " + reason_of(file, error_number)) {}
 
 TemporaryFolder::TemporaryFolder()
     : path_((std::filesystem::temp_directory_path() / "apothem-XXXXXX").string()) {

@@ -1,11 +1,5 @@
 #include "lib/output/force_lines.hpp"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkFieldData.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-
 #include <array>
 #include <cmath>
 
@@ -52,15 +46,12 @@ RoseCounts rose_of(const Region& region, const std::vector<ContactRecord>& conta
 
 }  // namespace
 
-vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents& frame) {
-  vtkNew<vtkPoints> points = double_points();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> chain = integers("chain"), a = integers("body_a"), b = integers("body_b");
-  vtkNew<vtkDoubleArray> normal = doubles("normal_force", 1);
-  vtkNew<vtkDoubleArray> tangential = doubles("tangential_force", 1);
-  const auto add_point = [&](const Vec2& world) {
-    return points->InsertNextPoint(world.x(), world.y(), 0);
-  };
+FrameGrid force_chains(const Model& model, const FrameContents& frame) {
+  FrameGrid grid{FrameGrid::Kind::lines};
+  GridArray chain = GridArray::whole_numbers("chain");
+  GridArray a = GridArray::whole_numbers("body_a"), b = GridArray::whole_numbers("body_b");
+  GridArray normal = GridArray::numbers("normal_force");
+  GridArray tangential = GridArray::numbers("tangential_force");
   const auto free_centre = [&](BodyIndex body) -> std::optional<Vec2> {
     const bool rigid = body < static_cast<BodyIndex>(model.bodies.size());
     if (rigid && model.bodies[body].motion != Motion::free) return {};
@@ -68,30 +59,31 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
   };
   int number = 0;  // of the contact
   for (const ContactRecord& c : frame.contacts) {
-    const auto add_line = [&](vtkIdType first, vtkIdType second) {
-      cells->InsertNextCell({first, second});
-      chain->InsertNextValue(number);
-      a->InsertNextValue(c.a);
-      b->InsertNextValue(c.b);
-      normal->InsertNextValue((c.normal + c.damping).norm());
-      tangential->InsertNextValue(c.tangential.norm());
+    const auto add_line = [&](std::int32_t first, std::int32_t second) {
+      grid.add_cell({first, second});
+      chain.integers.push_back(number);
+      a.integers.push_back(c.a);
+      b.integers.push_back(c.b);
+      normal.reals.push_back((c.normal + c.damping).norm());
+      tangential.reals.push_back(c.tangential.norm());
     };
     const std::optional<Vec2> from = free_centre(c.a), to = free_centre(c.b);
-    const vtkIdType first = from ? add_point(*from) : -1;
-    const vtkIdType middle = add_point(c.point + model.origin);
+    const std::int32_t first = from ? grid.add_point(*from) : -1;
+    const std::int32_t middle = grid.add_point(c.point + model.origin);
     if (from) add_line(first, middle);
-    if (to) add_line(middle, add_point(*to));
+    if (to) add_line(middle, grid.add_point(*to));
     ++number;
   }
-  return grid_of(points, VTK_LINE, cells, {chain, a, b, normal, tangential});
+  grid.of_cells = {std::move(chain), std::move(a), std::move(b), std::move(normal),
+                   std::move(tangential)};
+  return grid;
 }
 
-vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame) {
-  vtkNew<vtkPoints> points = double_points();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> of_region = integers("region");
-  vtkNew<vtkDoubleArray> frequency = doubles("frequency", 1);
-  vtkNew<vtkDoubleArray> force = doubles("mean_force", 1);
+FrameGrid roses(const Model& model, const FrameContents& frame) {
+  FrameGrid grid{FrameGrid::Kind::lines};
+  GridArray of_region = GridArray::whole_numbers("region");
+  GridArray frequency = GridArray::numbers("frequency");
+  GridArray force = GridArray::numbers("mean_force");
   for (size_t r = 0; r < model.regions.size(); ++r) {
     const Region& region = model.regions[r];
     Box box;
@@ -99,25 +91,24 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
     const Vec2 middle = Vec2((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2) + model.origin;
     const double unit = std::sqrt(region.area) / 4;
     const RoseCounts rose = rose_of(region, frame.contacts);
-    const vtkIdType first = points->GetNumberOfPoints();
+    const auto first = static_cast<std::int32_t>(grid.points.size());
     for (size_t s = 0; s < kSectors; ++s) {
       for (const size_t end : {s, s + 1}) {
         const auto [sine, cosine] = sine_cosine(2 * M_PI * static_cast<double>(end) / kSectors);
         const double radius = unit * rose.frequency(s);
-        points->InsertNextPoint(middle.x() + radius * cosine, middle.y() + radius * sine, 0);
-        frequency->InsertNextValue(rose.frequency(s));
-        force->InsertNextValue(rose.mean_force(s));
+        grid.add_point(Vec2(middle.x() + radius * cosine, middle.y() + radius * sine));
+        frequency.reals.push_back(rose.frequency(s));
+        force.reals.push_back(rose.mean_force(s));
       }
     }
-    constexpr auto kPoints = static_cast<vtkIdType>(2 * kSectors);
-    for (vtkIdType i = 0; i < kPoints; ++i) {
-      cells->InsertNextCell({first + i, first + (i + 1) % kPoints});
-      of_region->InsertNextValue(static_cast<int>(r));
+    constexpr auto kPoints = static_cast<std::int32_t>(2 * kSectors);
+    for (std::int32_t i = 0; i < kPoints; ++i) {
+      grid.add_cell({first + i, first + (i + 1) % kPoints});
+      of_region.integers.push_back(static_cast<std::int32_t>(r));
     }
   }
-  vtkNew<vtkUnstructuredGrid> grid = grid_of(points, VTK_LINE, cells, {of_region});
-  grid->GetPointData()->AddArray(frequency);
-  grid->GetPointData()->AddArray(force);
+  grid.of_cells = {std::move(of_region)};
+  grid.of_points = {std::move(frequency), std::move(force)};
   return grid;
 }
 

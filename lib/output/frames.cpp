@@ -1,7 +1,6 @@
 #include "lib/output/frames.hpp"
 
 #include <fmt/format.h>
-#include <vtkFieldData.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,8 @@
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/force_lines.hpp"
+#include "lib/output/frame_container.hpp"
+#include "lib/output/vtu_text.hpp"
 #include "lib/text/words.hpp"
 
 namespace apothem {
@@ -34,7 +35,7 @@ struct FrameView {
 struct Series {
   std::string_view name, list;
   bool (*needed)(const FrameView&);
-  vtkNew<vtkUnstructuredGrid> (*make)(const FrameView&);
+  FrameGrid (*make)(const FrameView&);
 };
 
 bool always(const FrameView& /*of*/) { return true; }
@@ -67,19 +68,10 @@ std::string list_entry(const Series& series, size_t frame, double time) {
                      file_name(series, frame));
 }
 
-std::string text_of(const Series& series, const FrameView& view) {
-  const vtkNew<vtkUnstructuredGrid> grid = series.make(view);
-  vtkNew<vtkDoubleArray> time = doubles("TimeValue", 1);  // the name that VTK's readers know
-  time->InsertNextValue(view.frame.state.time);
-  grid->GetFieldData()->AddArray(time);
-  return xml(grid);
-}
-
 // Calls write(i) for i below `count`, which a thread takes when it is free. Throws what the first
 // of those threw that have failed; no other one is begun after a failure.
 template <class Write>
 void work_on(const Threads& threads, size_t count, const Write& write) {
-  keep_to_one_thread();  // before there are several, since it changes the environment
   std::vector<std::exception_ptr> failures(count);
   std::atomic<size_t> next = 0;
   std::atomic<bool> failed = false;
@@ -118,17 +110,22 @@ std::string names_table(const Model& model) {
 }  // namespace
 
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times,
-                         int threads, FileList* list)
+                         int threads, FileList* list, FrameFormat format)
     : folder_(std::move(folder)),
       model_(model),
       threads_(threads),
       times_(std::move(times)),
       list_(list) {
-  for (const Series& series : kSeries) {
-    std::string& entries = lists_.emplace_back(kListHead);
-    for (size_t i = 0; i < times_.size(); ++i) entries += list_entry(series, i, times_[i]);
+  if (format == FrameFormat::xdmf) {
+    create_folder(folder_);
+    container_ = std::make_unique<FrameContainer>(folder_, times_.size());
+  } else {
+    for (const Series& series : kSeries) {
+      std::string& entries = lists_.emplace_back(kListHead);
+      for (size_t i = 0; i < times_.size(); ++i) entries += list_entry(series, i, times_[i]);
+    }
+    create_folder(folder_ + "/frames");
   }
-  create_folder(folder_ + "/frames");
   write_file(folder_ + "/names.csv", names_table(model_));
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     Cells cells = convex_cells(model_.bodies[i].rings());
@@ -142,7 +139,23 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
   }
 }
 
+FrameWriter::~FrameWriter() = default;
+
 void FrameWriter::write(const FrameContents& frame) {
+  container_ ? contain(frame) : write_files(frame);
+  times_.push_back(frame.state.time);
+}
+
+void FrameWriter::contain(const FrameContents& frame) {
+  const FrameView view{model_, frame, shapes_};
+  std::vector<NamedGrid> grids;
+  for (const Series& series : kSeries) {
+    if (series.needed(view)) grids.push_back({std::string(series.name), series.make(view)});
+  }
+  container_->add(frame.state.time, grids);
+}
+
+void FrameWriter::write_files(const FrameContents& frame) {
   const size_t number = times_.size();
   const FrameView view{model_, frame, shapes_};
   std::vector<size_t> needed;  // numbers of series
@@ -154,10 +167,9 @@ void FrameWriter::write(const FrameContents& frame) {
   }
   if (list_) list_->add(names);
   work_on(threads_, needed.size(), [&](size_t i) {
-    write_file(folder_ + "/" + names[i], text_of(kSeries[needed[i]], view));
+    write_file(folder_ + "/" + names[i], vtu_text(kSeries[needed[i]].make(view), frame.state.time));
   });
   fresh_.insert(fresh_.end(), names.begin(), names.end());
-  times_.push_back(frame.state.time);
   for (size_t s = 0; s < kSeries.size(); ++s) {
     lists_[s] += list_entry(kSeries[s], number, frame.state.time);
   }
@@ -171,6 +183,7 @@ void FrameWriter::write(const FrameContents& frame) {
 }
 
 void FrameWriter::make_last() {
+  if (container_) return container_->make_last();
   if (fresh_.empty()) return;
   std::error_code ignored;
   for (const std::string& name : fresh_) {
@@ -183,8 +196,10 @@ void FrameWriter::make_last() {
 
 std::vector<std::string> frame_lists() {
   std::vector<std::string> names;
-  names.reserve(kSeries.size());
+  names.reserve(kSeries.size() + 3);
   for (const Series& series : kSeries) names.emplace_back(series.list);
+  names.insert(names.end(),
+               {FrameContainer::kBodies, FrameContainer::kOthers, FrameContainer::kNumbers});
   return names;
 }
 

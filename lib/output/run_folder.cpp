@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "lib/output/convex_cells.hpp"
+#include "lib/output/frame_container.hpp"
 #include "lib/output/vtu_file.hpp"
 #include "lib/system/input_file.hpp"
 #include "lib/text/csv.hpp"
@@ -16,7 +17,7 @@
 namespace apothem {
 namespace {
 
-std::vector<Vec2> vectors(const VtuArray& array, size_t count) {
+std::vector<Vec2> vectors(const FileArray& array, size_t count) {
   std::vector<Vec2> result;
   result.reserve(count);
   for (size_t i = 0; i < count; ++i) result.push_back(array.vector(i));
@@ -25,7 +26,7 @@ std::vector<Vec2> vectors(const VtuArray& array, size_t count) {
 
 // The arrays of the cells of a frame.
 struct CellArrays {
-  explicit CellArrays(const VtuFile& file)
+  explicit CellArrays(const GridFile& file)
       : body(file.cell_array("body")),
         part(file.cell_array("part")),
         material(file.cell_array("material")),
@@ -36,8 +37,8 @@ struct CellArrays {
       if (there) quantities[i] = &file.cell_array(quantity.name, quantity.components());
     }
   }
-  const VtuArray &body, &part, &material, &motion;
-  std::array<const VtuArray*, kBodyQuantities.size()> quantities{};  // null: not there
+  const FileArray &body, &part, &material, &motion;
+  std::array<const FileArray*, kBodyQuantities.size()> quantities{};  // null: not there
 };
 
 // The values of cell `c` for the body that it belongs to.
@@ -46,7 +47,7 @@ void read_body(const CellArrays& arrays, size_t c, FrameBody& body) {
   body.motion = static_cast<Motion>(std::lround(arrays.motion(c)));
   for (size_t i = 0; i < kBodyQuantities.size(); ++i) {
     if (!kBodyQuantities[i].in_frames()) continue;
-    const VtuArray* const values = arrays.quantities[i];
+    const FileArray* const values = arrays.quantities[i];
     if (!values) body.values[i].fill(std::nan(""));
     for (int k = 0; values && k < kBodyQuantities[i].components(); ++k) {
       body.values[i][static_cast<size_t>(k)] = (*values)(c, static_cast<size_t>(k));
@@ -64,7 +65,7 @@ void name_bodies(const FrameNames& names, Frame& frame) {
 }
 
 // Adds the element or rigid body of cell `c`.
-void add_element(const VtuFile& file, const CellArrays& arrays, size_t c, Frame& frame) {
+void add_element(const GridFile& file, const CellArrays& arrays, size_t c, Frame& frame) {
   const int body = static_cast<int>(arrays.body(c));
   if (body < 0 || body >= static_cast<int>(frame.bodies.size())) {
     throw ResultsError(fmt::format("{}: there is no name of body {}", file.name, body));
@@ -90,10 +91,10 @@ void add_joined(const std::vector<std::vector<int>>& cells, bool rigid, Frame& f
 }
 
 // The stresses of the elements, of which each begins with one of these cells.
-void read_stresses(const VtuFile& file, const std::vector<size_t>& cells, Frame& frame) {
+void read_stresses(const GridFile& file, const std::vector<size_t>& cells, Frame& frame) {
   frame.stress.resize(cells.size());
   if (all_rigid(frame)) return;
-  const VtuArray &in_plane = file.cell_array("stress", 3), &across = file.cell_array("stress_zz");
+  const FileArray &in_plane = file.cell_array("stress", 3), &across = file.cell_array("stress_zz");
   for (size_t e = 0; e < cells.size(); ++e) {
     if (!frame.body_of(static_cast<int>(e)).meshed) continue;
     const size_t c = cells[e];
@@ -151,13 +152,18 @@ RunFolder::RunFolder(std::string folder) : folder_(std::move(folder)) {
   if (!std::filesystem::is_directory(folder_)) {
     throw ResultsError(folder_ + ": there is no such folder");
   }
-  const std::string list = folder_ + "/frames.pvd";
-  if (!std::filesystem::exists(list)) {
+  std::string list = folder_ + "/frames.pvd";
+  if (!has("frames.pvd") && has(FrameContainer::kNumbers)) {
+    container_ = std::make_shared<ContainedFrames>(folder_);
+    times_ = container_->times();
+    list = folder_ + "/" + FrameContainer::kNumbers;
+  } else if (!has("frames.pvd")) {
     throw ResultsError(list + ": there is no such file; give the folder of results of a run");
-  }
-  for (auto& [time, file] : read_pvd(list)) {
-    times_.push_back(time);
-    files_.push_back(std::move(file));
+  } else {
+    for (auto& [time, file] : read_pvd(list)) {
+      times_.push_back(time);
+      files_.push_back(std::move(file));
+    }
   }
   if (times_.empty()) throw ResultsError(list + ": there is no frame in it yet");
   names_ = read_names(folder_ + "/names.csv");
@@ -177,16 +183,17 @@ size_t RunFolder::nearest(double time) const {
 }
 
 // All files of a frame are written before a .pvd file lists its bodies.
-std::string RunFolder::file_of(const char* series, size_t number) const {
+GridFile RunFolder::grid(const char* series, size_t number) const {
+  if (container_) return container_->read(series, number);
   static const std::string kBodies = "/bodies_";
   std::string file = folder_ + "/" + files_.at(number);
   const size_t at = file.rfind(kBodies);
   if (at != std::string::npos) file.replace(at, kBodies.size(), fmt::format("/{}_", series));
-  return file;
+  return read_vtu(file);
 }
 
 Frame RunFolder::frame(size_t number) const {
-  const VtuFile file = read_vtu(file_of("bodies", number));
+  const GridFile file = grid("bodies", number);
   Frame frame;
   frame.time = times_.at(number);
   name_bodies(names_, frame);
@@ -220,10 +227,10 @@ Frame RunFolder::frame(size_t number) const {
 }
 
 std::vector<ForceChain> RunFolder::chains(size_t number) const {
-  const VtuFile file = read_vtu(file_of("chains", number));
-  const VtuArray &a = file.cell_array("body_a"), &b = file.cell_array("body_b");
-  const VtuArray& normal = file.cell_array("normal_force");
-  const VtuArray& chain = file.cell_array("chain");
+  const GridFile file = grid("chains", number);
+  const FileArray &a = file.cell_array("body_a"), &b = file.cell_array("body_b");
+  const FileArray& normal = file.cell_array("normal_force");
+  const FileArray& chain = file.cell_array("chain");
   std::vector<ForceChain> chains;
   for (size_t c = 0; c < file.cells(); ++c) {
     const std::vector<Vec2> line = file.line(c);
@@ -238,7 +245,7 @@ std::vector<ForceChain> RunFolder::chains(size_t number) const {
 }
 
 std::vector<SurfaceRecord> RunFolder::surfaces(size_t number) const {
-  const VtuFile file = read_vtu(file_of("surfaces", number));
+  const GridFile file = grid("surfaces", number);
   std::vector<SurfaceRecord> surfaces;
   for (size_t c = 0; c < file.cells(); ++c) {
     const std::vector<Vec2> ends = file.line(c);
@@ -250,14 +257,18 @@ std::vector<SurfaceRecord> RunFolder::surfaces(size_t number) const {
   return surfaces;
 }
 
+bool RunFolder::has_roses() const {
+  return container_ ? container_->has("roses", 0) : has("roses.pvd");
+}
+
 bool RunFolder::has(const std::string& file) const {
   return std::filesystem::exists(folder_ + '/' + file);
 }
 
 std::vector<Rose> RunFolder::roses(size_t number) const {
-  const VtuFile file = read_vtu(file_of("roses", number));
-  const VtuArray& frequency = file.point_array("frequency");
-  const VtuArray& region = file.cell_array("region");
+  const GridFile file = grid("roses", number);
+  const FileArray& frequency = file.point_array("frequency");
+  const FileArray& region = file.cell_array("region");
   std::vector<Rose> roses;
   const auto add = [&](int point) {
     roses.back().line.push_back(file.points[static_cast<size_t>(point)]);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,9 @@
 #include "lib/output/history.hpp"
 
 namespace apothem {
+
+class ContainedFrames;
+struct GridFile;
 
 /// Thrown for results that are missing or cannot be read. The message names the file and the
 /// remedy.
@@ -122,7 +126,7 @@ class RunFolder {
   /// The pressure and traction on the boundaries of bodies in contact with meshes.
   [[nodiscard]] std::vector<SurfaceRecord> surfaces(size_t number) const;
   /// Whether the scene has regions, which have roses.
-  [[nodiscard]] bool has_roses() const { return has("roses.pvd"); }
+  [[nodiscard]] bool has_roses() const;
   [[nodiscard]] std::vector<Rose> roses(size_t number) const;
 
   /// Whether a file of that name is in the folder.
@@ -133,12 +137,13 @@ class RunFolder {
   }
 
  private:
-  [[nodiscard]] std::string file_of(const char* series, size_t number) const;
+  [[nodiscard]] GridFile grid(const char* series, size_t number) const;
 
   std::string folder_;
   FrameNames names_;
   std::vector<double> times_;
   std::vector<std::string> files_;  // of the bodies in each frame, relative to the folder
+  std::shared_ptr<const ContainedFrames> container_;  // in place of such files; null: none
 };
 
 /// The first frame not before `time` and not after `latest` (s) in a folder of results. Throws

@@ -120,8 +120,8 @@ void require_order(const std::string& file, vtkUnstructuredGrid* grid) {
   }
 }
 
-VtuArray array_of(vtkDataArray* data) {
-  VtuArray array{data->GetNumberOfComponents(), {}};
+FileArray array_of(vtkDataArray* data) {
+  FileArray array{data->GetNumberOfComponents(), {}};
   const vtkIdType count = data->GetNumberOfValues();
   if (auto* reals = vtkDoubleArray::SafeDownCast(data)) {
     array.values.assign(reals->GetPointer(0), reals->GetPointer(0) + count);
@@ -134,8 +134,8 @@ VtuArray array_of(vtkDataArray* data) {
   return array;
 }
 
-VtuFile::Arrays arrays_of(vtkFieldData* data) {
-  VtuFile::Arrays arrays;
+GridFile::Arrays arrays_of(vtkFieldData* data) {
+  GridFile::Arrays arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
     vtkDataArray* array = data->GetArray(i);  // null where it has no numbers
     if (array && array->GetName()) arrays[array->GetName()] = array_of(array);
@@ -143,9 +143,9 @@ VtuFile::Arrays arrays_of(vtkFieldData* data) {
   return arrays;
 }
 
-const VtuArray& find(const VtuFile& file, const VtuFile::Arrays& arrays, const char* name,
-                     int components, size_t count) {
-  static const VtuArray nothing;
+const FileArray& find(const GridFile& file, const GridFile::Arrays& arrays, const char* name,
+                      int components, size_t count) {
+  static const FileArray nothing;
   const auto found = arrays.find(name);
   if (found != arrays.end() && found->second.components >= components &&
       found->second.values.size() >= count * static_cast<size_t>(found->second.components)) {
@@ -159,21 +159,21 @@ const VtuArray& find(const VtuFile& file, const VtuFile::Arrays& arrays, const c
 
 }  // namespace
 
-std::vector<Vec2> VtuFile::line(size_t c) const {
+std::vector<Vec2> GridFile::line(size_t c) const {
   std::vector<Vec2> places;
   for (int i = first[c]; i < first[c + 1]; ++i) places.push_back(points[corners[i]]);
   return places;
 }
 
-const VtuArray& VtuFile::point_array(const char* array, int components) const {
+const FileArray& GridFile::point_array(const char* array, int components) const {
   return find(*this, of_points, array, components, points.size());
 }
 
-const VtuArray& VtuFile::cell_array(const char* array, int components) const {
+const FileArray& GridFile::cell_array(const char* array, int components) const {
   return find(*this, of_cells, array, components, cells());
 }
 
-VtuFile read_vtu(const std::string& file) {
+GridFile read_vtu(const std::string& file) {
   require_file(file);
   require_known_arrays(file);
   keep_vtk_silent();
@@ -190,12 +190,12 @@ VtuFile read_vtu(const std::string& file) {
   if (!errors.none()) throw damaged(file);
   vtkUnstructuredGrid* grid = reader->GetOutput();
   if (grid->GetNumberOfCells() > 0) require_order(file, grid);
-  VtuFile result;
+  GridFile result;
   result.name = file;
   const auto count = static_cast<size_t>(grid->GetNumberOfPoints());
   result.points.reserve(count);
   if (count > 0) {
-    const VtuArray places = array_of(grid->GetPoints()->GetData());
+    const FileArray places = array_of(grid->GetPoints()->GetData());
     for (size_t i = 0; i < count; ++i) result.points.push_back(places.vector(i));
   }
   // A file without points has a cell for readers that need one, see vtk_grid.hpp.

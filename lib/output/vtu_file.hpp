@@ -11,7 +11,7 @@
 namespace apothem {
 
 /// A data array: so many components for each point, cell or file.
-struct VtuArray {
+struct FileArray {
   int components = 1;
   std::vector<double> values;  ///< tuple after tuple
   [[nodiscard]] double operator()(size_t tuple, size_t component = 0) const {
@@ -20,9 +20,9 @@ struct VtuArray {
   [[nodiscard]] Vec2 vector(size_t tuple) const { return {(*this)(tuple, 0), (*this)(tuple, 1)}; }
 };
 
-/// An unstructured grid in the plane.
-struct VtuFile {
-  using Arrays = std::map<std::string, VtuArray>;
+/// An unstructured grid in the plane, as a file has it.
+struct GridFile {
+  using Arrays = std::map<std::string, FileArray>;
 
   std::string name;            ///< of the file
   std::vector<Vec2> points;    ///< m
@@ -38,12 +38,12 @@ struct VtuFile {
   [[nodiscard]] std::vector<Vec2> line(size_t c) const;  ///< places of the corners of a cell
   /// The array, empty in a file without cells. Throws ResultsError if there is none of that name
   /// with so many components or more for each point or cell.
-  [[nodiscard]] const VtuArray& point_array(const char* array, int components = 1) const;
-  [[nodiscard]] const VtuArray& cell_array(const char* array, int components = 1) const;
+  [[nodiscard]] const FileArray& point_array(const char* array, int components = 1) const;
+  [[nodiscard]] const FileArray& cell_array(const char* array, int components = 1) const;
 };
 
 /// Reads a .vtu file. Throws ResultsError if it is not there or cannot be read.
-VtuFile read_vtu(const std::string& file);
+GridFile read_vtu(const std::string& file);
 
 /// Times (s) and files of a .pvd file, in its order; files relative to its folder. Throws
 /// ResultsError if it is not there or cannot be read.

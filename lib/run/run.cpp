@@ -48,7 +48,8 @@ Run::Run(Scene scene, const RunSettings& settings)
   processor_start_ = processor_time();
   if (folder.empty()) return;
   history_.emplace(folder, scene_.model, scene_.output, histories);
-  frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads, files_.get());
+  frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads, files_.get(),
+                  scene_.output.format);
 }
 
 // Takes the folder for a run that begins there.
@@ -139,6 +140,10 @@ HistoryWriter::Parts Run::start() {
     warn(fmt::format("{} {} outside of the world: check \"box\" in \"world\"", outside,
                      outside == 1 ? "body begins" : "bodies begin"));
   }
+  if (std::string sentence = rules_in_vain(scene_.model, scene_.stops, state());
+      !sentence.empty() && outside == 0) {
+    warn(std::move(sentence));
+  }
   prepare();
   return {};
 }
@@ -194,9 +199,9 @@ void Run::note_failures(const Work& work) {
       work();
     } catch (const Unstable& error) {
       status_ = Status::unstable;
-      message_ = error.what();
+      message_ = with_key_of_step(error.what(), scene_.time);
       flush();
-      throw;
+      throw Unstable(message_, error.body());
     }
   } catch (const SystemFailure& error) {
     status_ = Status::failed;
@@ -334,6 +339,11 @@ Run::Status Run::finish() {
   if (status_ != Status::unstable) {
     note_failures([&] { close(); });
     for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes(), load_steps())) {
+      warn(with_key_of_step(std::move(sentence), scene_.time));
+    }
+    if (std::string sentence = rules_in_vain(scene_.model, scene_.stops, state());
+        !sentence.empty() && stopped_by_.empty() &&
+        std::ranges::find(warnings_, sentence) == warnings_.end()) {
       warn(std::move(sentence));
     }
   }

@@ -14,7 +14,7 @@ constexpr size_t kNamedPairs = 3;
 constexpr double kRounding = 1e-9;  // of the inradius; less is touching
 
 std::string pair_text(const Model& model, const PairDepth& pair) {
-  return fmt::format("\"{}\" and \"{}\" by {:.3g} m ({:.2g} % of the smaller inradius)",
+  return fmt::format("\"{}\" and \"{}\" by {:.3g} m ({:.3g} % of the smaller inradius)",
                      model.name_of(pair.a), model.name_of(pair.b), pair.depth, 100 * pair.share);
 }
 
@@ -34,11 +34,12 @@ void refuse_overlaps(const Scene& scene, const Simulation& simulation) {
                   describe_overlaps(simulation)));
 }
 
-std::string depth_text(const Model& model, const ExpectedDepth& e, const char* cause) {
+// From flat to cornered, where there is a difference.
+std::string depth_text(const Model& model, const ExpectedDepth& e) {
   const std::string corner =
-      e.corner > 0 ? fmt::format(" flat, {:.2g} m by its sharpest corner", e.corner) : "";
-  return fmt::format("about {:.2g} m{} by {}: {:.2g} % of the inradius of \"{}\"", e.depth, corner,
-                     cause, 100 * e.share, model.name_of(e.body));
+      e.corner > 0 ? fmt::format(" flat to {:.2g} m by a corner", e.corner) : "";
+  return fmt::format("about {:.2g} m{}, {}{:.3g} % of the inradius of \"{}\"", e.depth, corner,
+                     e.corner > 0 ? "up to " : "", 100 * e.share, model.name_of(e.body));
 }
 
 }  // namespace
@@ -75,15 +76,15 @@ std::string describe_overlaps(const Simulation& simulation) {
   return text + fmt::format("; elastic energy {:.3g} J", simulation.energies().contact);
 }
 
-std::vector<std::string> describe_forecast(const Simulation& simulation) {
+std::string describe_forecast(const Simulation& simulation) {
   const Forecast forecast = simulation.forecast();
-  std::vector<std::string> lines;
-  for (const auto& [depth, cause] :
-       {std::pair(forecast.by_weight, "weight"),
-        std::pair(forecast.by_speed, "impact at the speeds present")}) {
-    if (depth.body >= 0) lines.push_back(depth_text(simulation.model(), depth, cause));
+  std::string text;
+  for (const auto& [depth, when] : {std::pair(forecast.by_weight, "at rest, by weight, "),
+                                    std::pair(forecast.by_speed, "in the first impacts ")}) {
+    if (depth.body < 0) continue;
+    text += (text.empty() ? "" : "; ") + (when + depth_text(simulation.model(), depth));
   }
-  return lines;
+  return text;
 }
 
 Trial try_steps(const Scene& scene, int threads, double seconds) {

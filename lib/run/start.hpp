@@ -28,8 +28,8 @@ inline constexpr double kSmallOverlap = 1e-3;
 /// The pairs that overlap now, with depth and energy, in one line; empty if no bodies overlap.
 std::string describe_overlaps(const Simulation& simulation);
 
-/// The probable depths of contact, one line each: see Forecast.
-std::vector<std::string> describe_forecast(const Simulation& simulation);
+/// The probable depths of contact in one line: see Forecast.
+std::string describe_forecast(const Simulation& simulation);
 
 /// The steps of a trial and what they took.
 struct Trial {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/model/inradius.hpp"
 
@@ -34,7 +35,7 @@ void warn_of_energy(const Extremes& extremes, std::vector<std::string>& warnings
   if (!(extremes.energy_error > extremes.energy_allowed)) return;
   warnings.push_back(fmt::format(
       "for a few steps {:.3g} J were unaccounted for, more than a tenth of the {:.3g} J in play: "
-      "contacts are integrated coarsely; reduce time.accuracy, time.safety or time.step",
+      "contacts are integrated coarsely; reduce the time step",
       extremes.energy_error, extremes.energy_in_play));
 }
 
@@ -52,7 +53,44 @@ void warn_of_instability(std::span<const LoadStep> steps, std::vector<std::strin
       first->negative_pivots, first->negative_pivots == 1 ? "" : "s"));
 }
 
+// Free bodies that are below all others along gravity, by more than the size of any: nothing can
+// catch them.
+std::vector<RigidIndex> falling_for_ever(const Model& model, const State& state) {
+  const Vec2 down = model.gravity.normalized();
+  double floor = -HUGE_VAL;
+  const auto bodies = static_cast<RigidIndex>(model.bodies.size());
+  for (RigidIndex i = 0; i < bodies; ++i) {
+    const RigidBody& body = model.bodies[i];
+    if (body.motion == Motion::free || state.is_absent(i)) continue;
+    const double reach = box_of(body.potential.vertices).extent();
+    floor = std::max(floor, down.dot(state.pose(i).head<2>()) + reach);
+  }
+  std::vector<RigidIndex> found;
+  for (RigidIndex i = 0; i < bodies; ++i) {
+    const RigidBody& body = model.bodies[i];
+    if (body.motion != Motion::free || state.is_absent(i)) continue;
+    const double reach = box_of(body.potential.vertices).extent();
+    if (down.dot(state.pose(i).head<2>()) - reach > floor) found.push_back(i);
+  }
+  return found;
+}
+
 }  // namespace
+
+std::string rules_in_vain(const Model& model, const std::vector<StopRule>& rules,
+                          const State& state) {
+  const auto waits = [](const StopRule& rule) { return rule.kinetic_per_body && rule.region < 0; };
+  const auto rule = std::ranges::find_if(rules, waits);
+  if (rule == rules.end() || !model.has_gravity() || !model.deformables.empty()) return {};
+  const std::vector<RigidIndex> falling = falling_for_ever(model, state);
+  if (falling.empty()) return {};
+  const std::string more =
+      falling.size() > 1 ? fmt::format(" and {} more bodies fall", falling.size() - 1) : " falls";
+  return fmt::format(
+      "\"{}\"{} and nothing is below, so that the rule \"{}\" waits for rest in vain: bound the "
+      "\"world\", with \"outside\": \"remove\"",
+      model.bodies[falling.front()].name, more, rule->name);
+}
 
 std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes,
                                      std::span<const LoadStep> steps) {
@@ -61,6 +99,17 @@ std::vector<std::string> warnings_of(const Model& model, const Extremes& extreme
   warn_of_energy(extremes, warnings);
   warn_of_penetration(model, extremes.relative_penetration, warnings);
   return warnings;
+}
+
+std::string with_key_of_step(std::string sentence, const TimeSettings& time) {
+  constexpr std::string_view kWords = "the time step";
+  const size_t reduce = sentence.rfind("reduce ");
+  const size_t at = reduce == std::string::npos ? reduce : sentence.find(kWords, reduce);
+  if (at == std::string::npos) return sentence;
+  const char* const key = time.fixed_step ? "time.step"
+                          : time.safety   ? "time.safety"
+                                          : "time.accuracy";
+  return sentence.replace(at, kWords.size(), key);
 }
 
 }  // namespace apothem

@@ -19,11 +19,26 @@ const JsonValue& only_item(const JsonReader& in, const JsonValue& list, const ch
   in.fail(list, fmt::format("holds {} {}; {}", items.size(), what, kOnePolygon));
 }
 
+// A position may have a height as its third number, which is ignored here as in drawings that are
+// imported.
+RingText ring_of_positions(const JsonReader& in, const JsonValue& ring) {
+  RingText text;
+  for (const JsonValue& position : in.array(ring)) {
+    const std::vector<JsonValue>& numbers = in.array(position);
+    text.ring.push_back(numbers.size() == 3
+                            ? Vec2(in.number(numbers[0], "m"), in.number(numbers[1], "m"))
+                            : in.vec2(position, "m"));
+  }
+  leave_out_closing_vertex(text.ring);
+  for (size_t i = 0; i < text.ring.size(); ++i) text.lines.push_back(ring.items()[i].line());
+  return text;
+}
+
 PolygonText rings_of(const JsonReader& in, const JsonValue& rings) {
   const std::vector<JsonValue>& items = in.array(rings);
   if (items.empty()) in.fail(rings, "the polygon is empty; give it three vertices or more");
-  PolygonText text{ring_text(in, items[0]), {}};
-  for (size_t i = 1; i < items.size(); ++i) text.holes.push_back(ring_text(in, items[i]));
+  PolygonText text{ring_of_positions(in, items[0]), {}};
+  for (size_t i = 1; i < items.size(); ++i) text.holes.push_back(ring_of_positions(in, items[i]));
   return text;
 }
 

@@ -338,7 +338,7 @@ class OutlineMaker {
       const bool whole = shared > kSame * smaller && first.layer == second.layer;
       const bool apart = unless_faulty(shape_of(second), [&] {
         refuse(second,
-               fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
+               fmt::format("covers {:.4g} % of {} (or is covered so); delete one of them, "
                            "move them apart, or leave a layer out{}",
                            100 * shared / smaller, shown_place(first.place, first.layer),
                            whole ? "; say \"holes\": \"nested\" if the inner one is a hole" : ""));

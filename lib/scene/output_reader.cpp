@@ -112,6 +112,9 @@ void OutputReader::read(const JsonValue& value) {
     features_.add(Feature::frames, v);
     output_.frames = in_.count(*v);
   }
+  if (const JsonValue* v = object.optional("format")) {
+    output_.format = static_cast<FrameFormat>(in_.choice(*v, {"vtu", "xdmf"}));
+  }
   if (const JsonValue* v = object.optional("history")) history(*v);
   if (const JsonValue* v = object.optional("checkpoint")) checkpoint(*v);
   object.finish();

@@ -41,6 +41,7 @@ class Inspection {
     contact();
     motion();
     sizes();
+    stops();
     return std::move(found_);
   }
 
@@ -158,6 +159,35 @@ class Inspection {
         fmt::format("even the smallest body that can move, \"{}\", is {:g} m across: lengths are "
                     "in m, not in mm",
                     name, smallest));
+  }
+
+  // Rules by which the run can never end.
+  void stops() {
+    const JsonValue* list = scene_.document.find("stop");
+    if (list == nullptr) return;
+    const Model& model = scene_.model;
+    const auto free =
+        static_cast<size_t>(std::ranges::count(model.bodies, Motion::free, &RigidBody::motion)) +
+        model.deformables.size();
+    for (size_t i = 0; i < std::min(scene_.stops.size(), list->items().size()); ++i) {
+      const StopRule& rule = scene_.stops[i];
+      const JsonValue& at = list->items()[i];
+      const char* const start = "the rule can never end the run: ";
+      if (rule.count_above && static_cast<size_t>(*rule.count_above) > free) {
+        say(at, fmt::format("{}it waits for {} free bodies, and there are {}; check "
+                            "\"count_above\"",
+                            start, *rule.count_above, free));
+      }
+      if (rule.count_below && *rule.count_below == 0) {
+        say(at, std::string(start) + "there are never fewer than 0 bodies; check \"count_below\"");
+      }
+      if (rule.hold > scene_.time.end || rule.after > scene_.time.end ||
+          rule.no_exit_for.value_or(0) > scene_.time.end) {
+        say(at, fmt::format("{}it needs more than the {:g} s of the run; check \"for\", \"after\" "
+                            "and \"no_exit_for\"",
+                            start, scene_.time.end));
+      }
+    }
   }
 
   const Scene& scene_;

@@ -160,8 +160,8 @@ class SceneReader {
     if (name.empty() || has_control_character(name) ||
         name.find_first_of("/\\\n") != std::string::npos || name[0] == '.') {
       in_.fail(value,
-               "must be usable as the name of a folder: not empty, without / or \\, not "
-               "starting with a dot");
+               "must be usable as the name of a folder: not empty, without / or \\ or line breaks, "
+               "not starting with a dot");
     }
     return name;
   }
@@ -264,7 +264,7 @@ Scene read_scene_text(std::string text, const std::string& file,
     for (size_t i = 0; i < places.size(); ++i) {
       if (error.pointer() != places[i] && !error.pointer().starts_with(places[i] + "/")) continue;
       throw SceneError(file, error.line(), error.pointer(),
-                       error.reason() + ", set by \"" + settings[i].text() + "\"");
+                       error.reason() + ", set by " + settings[i].as_given());
     }
     throw;
   }

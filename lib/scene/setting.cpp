@@ -96,6 +96,15 @@ class Path {
 
 }  // namespace
 
+std::string Setting::as_given() const {
+  const Json json = Json::parse(value, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_string()) return text();
+  const auto& word = json.get_ref<const std::string&>();
+  const std::string pointed = replaced(word, ",", ".");
+  const bool comma = pointed != word && find_decimal(pointed).has_value();
+  return path + "=" + word + (comma ? "; the number is written " + pointed : "");
+}
+
 Setting parse_setting(const std::string& text, const std::string& file) {
   const size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {

@@ -14,6 +14,9 @@ struct Setting {
   std::string value;  ///< JSON
 
   [[nodiscard]] std::string text() const { return path + "=" + value; }
+  /// As somebody would write it, without the quotes of a word, and how a number is written if it
+  /// looks like one with a comma.
+  [[nodiscard]] std::string as_given() const;
   bool operator==(const Setting&) const = default;
 };
 

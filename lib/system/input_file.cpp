@@ -37,12 +37,19 @@ std::string refusal_of_input(const std::string& file) {
 std::string refusal_of_input(const std::string& file, size_t limit) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) {
-    return "cannot be opened: " + std::generic_category().message(errno) + "; check the name";
+    return cannot_open(file, errno);
   }
   std::string refusal = refusal_of(file, status);
   if (!refusal.empty() || limit == std::numeric_limits<size_t>::max()) return refusal;
   limit = input_limit(limit);
   return static_cast<std::uintmax_t>(status.st_size) > limit ? too_large(limit) : "";
+}
+
+std::string cannot_open(const std::string& file, int error) {
+  if (file == "-") return "is no file; the standard input has the name /dev/stdin";
+  const bool forbidden = error == EACCES || error == EPERM;
+  return "cannot be opened: " + std::generic_category().message(error) +
+         (forbidden ? "; give yourself the right to read it" : "; check the name");
 }
 
 size_t input_limit(size_t usual) {

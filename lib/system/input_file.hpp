@@ -15,6 +15,10 @@ std::string refusal_of_input(const std::string& file);
 /// place, see input_limit.
 std::string refusal_of_input(const std::string& file, size_t limit);
 
+/// What to say of a file that could not be opened: the system's reason (a value of errno), and what
+/// would be right.
+std::string cannot_open(const std::string& file, int error);
+
 /// Bytes of the largest file that is read: `usual`, or the number of MiB that the environment
 /// variable APOTHEM_INPUT_LIMIT holds.
 size_t input_limit(size_t usual);

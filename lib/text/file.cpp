@@ -1,10 +1,7 @@
 #include "lib/text/file.hpp"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <iterator>
-#include <system_error>
 #include <vector>
 
 #include "lib/system/input_file.hpp"
@@ -17,8 +14,7 @@ std::ifstream open_text(const std::string& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
-    throw SceneError(file, fmt::format("cannot be opened: {}; check the name",
-                                       std::generic_category().message(errno)));
+    throw SceneError(file, cannot_open(file, errno));
   }
   return stream;
 }

@@ -52,7 +52,8 @@ inline State state_of_results(const Model& model) {
 /// Frames at 0, 1, 2 and so on s: the block moves by .25 m along x and turns by .1 rad in each
 /// second; the beam is stretched by 1 % in each, and its element e has the stresses e + 1, -e, 2 e
 /// and 10 Pa. There is one contact between the floor and the block.
-inline void write_results(const std::string& folder, const Model& model, int frames) {
+inline void write_results(const std::string& folder, const Model& model, int frames,
+                          FrameFormat format = FrameFormat::vtu) {
   State state = state_of_results(model);
   std::vector<CauchyStress> stresses;
   if (!model.deformables.empty()) {
@@ -63,7 +64,7 @@ inline void write_results(const std::string& folder, const Model& model, int fra
   std::vector<BodyStatistics> statistics(state.absent.size());
   statistics[2] = {4, {-3, -5, 1, 0, 0}};
   const std::vector<double> mass(static_cast<size_t>(model.node_count()), 2.);
-  FrameWriter writer(folder, model);
+  FrameWriter writer(folder, model, {}, 1, nullptr, format);
   for (int i = 0; i < frames; ++i) {
     state.time = i;
     state.pose(2) << model.bodies[2].position + Vec2(.25 * i, 0), .1 * i;

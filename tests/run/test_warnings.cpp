@@ -80,7 +80,7 @@ TEST_CASE("a run warns of energy that a coarse contact has made and taken back",
   const std::vector<std::string> warnings = warnings_of(Model(), extremes);
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0], Catch::Contains("1.5 J") && Catch::Contains("the 10 J in play") &&
-                              Catch::Contains("reduce time.accuracy"));
+                              Catch::Contains("reduce the time step"));
   extremes.energy_error = .9;
   CHECK(warnings_of(Model(), extremes).empty());
 }

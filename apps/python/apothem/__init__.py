@@ -13,6 +13,7 @@ units, angles in radians. The method: doi:10.1007/s00466-020-01913-2.
 
 from apothem._apothem import (Bodies, Elements, Forces, Nodes, Polygon, Scene, Simulation, __version__,
                               boolean, contact, load, overlap, repair, resume, voronoi)
+from apothem._arguments import explain_arguments
 from apothem._errors import SceneError, Unstable
 from apothem._results import (InscribedCircle, PairContact, PolygonWithHoles, Repaired, Roof,
                               SingularArea, Skeleton, VoronoiCells)
@@ -21,3 +22,8 @@ __all__ = ["Bodies", "Elements", "Forces", "InscribedCircle", "Nodes", "PairCont
            "PolygonWithHoles", "Repaired", "Roof", "Scene", "SceneError", "Simulation", "SingularArea",
            "Skeleton", "Unstable", "VoronoiCells", "__version__", "boolean", "contact", "load",
            "overlap", "repair", "resume", "voronoi"]
+
+boolean, contact, load, overlap, repair, resume, voronoi = explain_arguments(
+    boolean, contact, load, overlap, repair, resume, voronoi)
+explain_arguments(Polygon, Scene, Simulation)
+del explain_arguments

@@ -86,7 +86,7 @@ TEST_CASE("polygons with holes are convex cells in VTK", "[program][boolean]") {
   const Folder folder;
   const std::string a = folder.write("a.json", kSquare), b = folder.write("b.wkt", kInner);
   REQUIRE(run({"boolean", a, b, "difference", "-o", folder / "c.vtu"}, folder).code == 0);
-  const VtuFile file = read_vtu(folder / "c.vtu");
+  const GridFile file = read_vtu(folder / "c.vtu");
   double area = 0;
   for (size_t c = 0; c < file.cells(); ++c) {
     const std::vector<Vec2> ring = file.line(c);

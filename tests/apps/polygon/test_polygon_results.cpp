@@ -42,7 +42,7 @@ TEST_CASE("parts of a polygon's geometry are written as shapes", "[program][poly
   const Json circle = Json::parse(content(shapes(folder, "incircle", ".geojson")));
   CHECK(circle["features"].size() == 2);  // at both ends of the segment of centres
   CHECK(circle["features"][0]["properties"]["radius"] == 1);
-  const VtuFile vtu = read_vtu(shapes(folder, "faces", ".vtu"));
+  const GridFile vtu = read_vtu(shapes(folder, "faces", ".vtu"));
   CHECK(vtu.cells() == 4);
   CHECK(vtu.cell_array("edge").values == std::vector<double>{0, 1, 2, 3});
   CHECK(content(shapes(folder, "skeleton", ".svg")).find("data-left_edge=\"0\"") !=
