@@ -15,7 +15,17 @@ foreach(ending IN ITEMS "" _write)
             --tests ${PROJECT_BINARY_DIR} $<$<BOOL:${APOTHEM_NUMBERS_QUICK}>:--quick> $<$<BOOL:${ending}>:--write>
     DEPENDS ${programs} USES_TERMINAL COMMAND_EXPAND_LISTS)
 endforeach()
+# The target apothem_images makes the pictures of the documents anew; a test says which of them are stale.
+add_custom_target(apothem_images
+  COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/images/make.py $<TARGET_FILE:apothem_program>
+  DEPENDS apothem_program USES_TERMINAL)
 if(APOTHEM_TESTS)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    add_test(NAME docs.images
+             COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/images/make.py $<TARGET_FILE:apothem_program> --check
+                     fig-19 energy impact)
+    set_tests_properties(docs.images PROPERTIES SKIP_RETURN_CODE 77)
+  endif()
   add_test(NAME docs.numbers COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --texts)
   add_test(NAME docs.check_numbers
            COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/docs/test_check_numbers.py)

@@ -173,8 +173,7 @@ class Reproduction {
     report.text = figure.text;
     for (const FigureStudy& study : figure.studies) {
       for (const std::vector<std::string>& command : study.of(options_.quick)) {
-        report.commands.push_back(
-            command_line(words_of(command, data_, folders_.studies + "/" + study.name)));
+        report.commands.push_back(command_line(words_of(command, "data", "studies/" + study.name)));
       }
     }
     const std::string folder = options_.folder + "/" + figure.name;

@@ -33,13 +33,8 @@ struct TimeSettings {
   double longest_step = 1e300;        ///< s; of an automatic step: the interval of the history
 };
 
-/// How frames are written: as files of their own in VTK's format, or all in one container, in HDF5
-/// with a description in XDMF.
-enum class FrameFormat { vtu, xdmf };
-
 struct OutputSettings {
-  int frames = 100;  ///< besides the one at time 0
-  FrameFormat format = FrameFormat::vtu;
+  int frames = 100;                                ///< besides the one at time 0
   double history_interval = 1e300;                 ///< s
   std::vector<RigidIndex> track;                   ///< rigid bodies in history.csv
   std::vector<DeformableIndex> track_deformables;  ///< deformable bodies as a whole

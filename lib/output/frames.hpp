@@ -17,8 +17,8 @@
 
 #include "lib/execution/parallel.hpp"
 #include "lib/mesh/mesh.hpp"
+#include "lib/model/frame_format.hpp"
 #include "lib/model/model.hpp"
-#include "lib/model/settings.hpp"
 #include "lib/model/state.hpp"
 #include "lib/model/statistics.hpp"
 #include "lib/output/file_list.hpp"

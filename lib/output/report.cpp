@@ -20,6 +20,10 @@ constexpr const char* kHead = R"(<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{0}</title>
 <style>{1}</style>
+<script>
+// Paper has no parts that unfold.
+addEventListener("beforeprint", () => {{ for (const part of document.querySelectorAll("details")) part.open = true; }});
+</script>
 </head>
 <body>
 <h1 id="top">{0}</h1>
@@ -99,12 +103,12 @@ std::string words(const ReportFigure& figure) {
   const FigureText& text = figure.text;
   std::string html = paragraph("What the paper shows", text.paper);
   if (!text.open.empty()) {
-    html += "<h3>What it leaves open, and the choice made</h3>\n<dl>\n";
+    html += "<details><summary><h3>What it leaves open, and the choice made</h3></summary>\n<dl>\n";
     for (const OpenQuestion& open : text.open) {
       html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(open.question),
                           escaped(open.choice));
     }
-    html += "</dl>\n";
+    html += "</dl>\n</details>\n";
   }
   return html + paragraph("What is shown here", text.about);
 }
@@ -123,7 +127,9 @@ std::string commands(const ReportFigure& figure) {
   if (figure.commands.empty()) return "";
   std::string lines;
   for (const std::string& command : figure.commands) lines += escaped(command) + "\n";
-  return "<h3>Commands that made the studies</h3>\n<pre>" + lines + "</pre>\n";
+  return "<details><summary><h3>Commands that made the studies</h3></summary>\n<p>In the folder of "
+         "this page, to which the folder of the program's data has been copied:</p>\n<pre>" +
+         lines + "</pre>\n</details>\n";
 }
 
 std::string section(const ReportFigure& figure) {

@@ -99,17 +99,22 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
     const bool with_scenes = std::ranges::any_of(
         numbers, [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
     std::string rows;
+    const GroupCount count = count_groups(numbers)[group];
     for (const ReportNumber& n : numbers) {
       if (is_here(n)) rows += row(n, with_scenes);
     }
     if (rows.empty()) continue;
+    const bool missed = count.met < count.numbers;
     text += fmt::format(
-        "<h3>{}</h3>\n<div class=\"numbers\"><table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
+        "<details{}><summary><h3>{}</h3> {} of {} within their tolerances</summary>\n<div "
+        "class=\"numbers\"><table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
         "<th class=\"number\">reference</th><th class=\"number\">result</th>"
         "<th class=\"number\">error</th><th class=\"number\">relative</th>"
         "<th class=\"number\">tolerance</th>"
-        "<th>verdict</th><th>rests on</th><th>source</th></tr></thead>\n{}</table></div>\n",
-        kGroups[group].heading, with_scenes ? "<th>scene</th>" : "", rows);
+        "<th>verdict</th><th>rests "
+        "on</th><th>source</th></tr></thead>\n{}</table></div>\n</details>\n",
+        missed ? " open" : "", kGroups[group].heading, count.met, count.numbers,
+        with_scenes ? "<th>scene</th>" : "", rows);
   }
   return text;
 }

@@ -7,6 +7,8 @@ inline constexpr const char* kReportStyle = R"(
 body { font: 16px/1.5 sans-serif; max-width: 1200px; margin: 2em auto; padding: 0 1em; color: #222; }
 h2 { margin-top: 2.5em; border-top: 2px solid #ccc; padding-top: .7em; }
 h3 { font-size: 1em; margin-bottom: .3em; }
+summary { cursor: pointer; margin-top: 1em; }
+summary h3 { display: inline; }
 img { max-width: 100%; height: auto; }
 .picture, .numbers { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14px; }

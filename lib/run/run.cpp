@@ -49,7 +49,7 @@ Run::Run(Scene scene, const RunSettings& settings)
   if (folder.empty()) return;
   history_.emplace(folder, scene_.model, scene_.output, histories);
   frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads, files_.get(),
-                  scene_.output.format);
+                  scene_.frame_format);
 }
 
 // Takes the folder for a run that begins there.

@@ -34,7 +34,7 @@ RingText ring_of_positions(const JsonReader& in, const JsonValue& ring) {
   return text;
 }
 
-PolygonText rings_of(const JsonReader& in, const JsonValue& rings) {
+PolygonText text_of_rings(const JsonReader& in, const JsonValue& rings) {
   const std::vector<JsonValue>& items = in.array(rings);
   if (items.empty()) in.fail(rings, "the polygon is empty; give it three vertices or more");
   PolygonText text{ring_of_positions(in, items[0]), {}};
@@ -67,9 +67,9 @@ PolygonText polygon_of_geojson(const JsonReader& in, const JsonValue& object) {
   const int kind = in.choice(type, types);
   switch (kind) {
     case 0:
-      return rings_of(in, member(in, object, "coordinates"));
+      return text_of_rings(in, member(in, object, "coordinates"));
     case 1:
-      return rings_of(in, only_item(in, member(in, object, "coordinates"), "polygons"));
+      return text_of_rings(in, only_item(in, member(in, object, "coordinates"), "polygons"));
     case 2:
       return polygon_of_geojson(in, member(in, object, "geometry"));
     case 3:

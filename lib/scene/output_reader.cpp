@@ -113,7 +113,7 @@ void OutputReader::read(const JsonValue& value) {
     output_.frames = in_.count(*v);
   }
   if (const JsonValue* v = object.optional("format")) {
-    output_.format = static_cast<FrameFormat>(in_.choice(*v, {"vtu", "xdmf"}));
+    format_ = in_.choice<FrameFormat>(*v, kFrameFormats);
   }
   if (const JsonValue* v = object.optional("history")) history(*v);
   if (const JsonValue* v = object.optional("checkpoint")) checkpoint(*v);

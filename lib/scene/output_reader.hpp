@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lib/model/columns.hpp"
+#include "lib/model/frame_format.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
 #include "lib/scene/compatibility.hpp"
@@ -29,6 +30,8 @@ class OutputReader {
 
   /// Reads "output". Throws SceneError.
   void read(const JsonValue& value);
+  /// How frames are written.
+  [[nodiscard]] FrameFormat frame_format() const { return format_; }
 
   /// Expectations and measures may name this quantity besides the columns of the histories.
   void know(HistoryColumn quantity) { besides_.push_back(std::move(quantity)); }
@@ -58,6 +61,7 @@ class OutputReader {
   OutputSettings& output_;
   UsedFeatures& features_;
   std::vector<HistoryColumn> besides_;
+  FrameFormat format_ = FrameFormat::vtu;
 };
 
 /// Throws SceneError for a name that cannot head the columns of a CSV file.

@@ -177,6 +177,7 @@ class SceneReader {
     OutputReader reader(in_, model_, bodies, scene_.output, features_);
     reader.track_by_default();
     if (output) reader.read(*output);
+    scene_.frame_format = reader.frame_format();
     if (!scene_.time.statics && !features_.uses(Feature::history_interval)) {
       scene_.output.history_interval = scene_.time.end / default_rows(model_, scene_.output);
     }

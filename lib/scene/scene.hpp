@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/model/frame_format.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
 #include "lib/scene/import_report.hpp"
@@ -20,6 +21,7 @@ struct Scene {
   TimeSettings time;
   bool automatic_scheme = false;  ///< whether "scheme": "auto" goes with all that the scene uses
   OutputSettings output;
+  FrameFormat frame_format = FrameFormat::vtu;
   bool rigid = false;  ///< results are those of rigid bodies (run/rigid_limit.hpp)
   std::vector<Expectation> expectations;
   std::vector<StopRule> stops;

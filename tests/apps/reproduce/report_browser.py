@@ -56,6 +56,14 @@ def look(report, width, phone):
         browser.open(report.as_uri())
         browser.wait("Array.from(document.images).every(i => i.complete)")
         check = Checks(browser, f"{width} px")
+        if phone:
+            # Folded, the page is a few screens for each figure.
+            check.equal(f"document.documentElement.scrollHeight < {900 * (3 + 4 * len(FIGURES))}", True, "the length when folded")
+        check.equal("document.querySelectorAll('details').length >= " + str(2 * len(FIGURES)), True, "parts that unfold")
+        check.equal("Array.from(document.querySelectorAll('details')).filter(d => d.open !== "
+                    "!!d.querySelector('tr.missed')).length", 0, "what is unfolded: missed numbers alone")
+        check.equal("document.body.textContent.includes('" + str(report.parent) + "')", False, "paths of this machine")
+        browser.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
         check.equal("document.querySelectorAll('h2').length >= " + str(len(FIGURES) + 1), True, "headings")
         check.equal("document.images.length", len(FIGURES), "pictures")
         check.equal("Array.from(document.images).filter(i => !i.naturalWidth || !i.alt).length", 0,
