@@ -35,7 +35,7 @@ def of_figure(name):
         tables = sorted(figure.glob("*.csv"))
         if not tables:  # fields: the results that they show
             tables = sorted((folder / "report/runs").glob("*/energy.csv"))
-        return figure / "picture.png", tables
+        return sorted(figure.glob("*.png"))[0], tables
     return make
 
 
@@ -88,7 +88,7 @@ def differences(kept, fresh):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("names", nargs="*", choices=[*PICTURES, []], help="all by default")
+    parser.add_argument("names", nargs="*", choices=[[], *PICTURES], help="all by default")
     parser.add_argument("--check", action="store_true", help="compare, and write nothing")
     options = parser.parse_args()
     if not shutil.which("gnuplot"):
@@ -105,9 +105,8 @@ def main():
                 continue
             shutil.copy(picture, HERE / f"{name}.png")
             digests[name] = digest
-    if not options.check:
-        lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(digests[name])}" for name in sorted(digests))
-        DIGESTS.write_text("{\n" + lines + "\n}\n")
+            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(digests[name])}" for name in sorted(digests))
+            DIGESTS.write_text("{\n" + lines + "\n}\n")
     for line in stale:
         print(line)
     return 1 if stale else 0

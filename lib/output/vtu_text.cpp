@@ -72,7 +72,9 @@ class VtuText {
            std::string_view attributes = "") {
     fmt::format_to(std::back_inserter(text), "<DataArray type=\"{}\" Name=\"{}\"{} format=\"{}\">",
                    type, name, attributes, numbers.empty() ? "ascii" : "binary");
-    if (!numbers.empty()) {
+    if (numbers.empty()) {
+      text += '\n';  // meshio wants some text
+    } else {
       add_bytes({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
     }
     text += "</DataArray>\n";
@@ -144,8 +146,8 @@ void add_cells_of_nothing(VtuText& out, const FrameGrid& grid) {
   out.text +=
       "</CellData>\n"
       "<Points><DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "
-      "format=\"ascii\"></DataArray></Points>\n"
-      "<Cells>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\"></DataArray>\n"
+      "format=\"ascii\">\n</DataArray></Points>\n"
+      "<Cells>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n</DataArray>\n"
       "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">0</DataArray>\n"
       "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">7</DataArray>\n</Cells>\n";
 }
