@@ -28,7 +28,7 @@ std::string start_of_entry(size_t number) {
 }
 
 // Of a frame: when it is; of a series: that it has no cells.
-constexpr const char *kTime = "time", *kEmpty = "empty";
+constexpr const char *kTimeOfFrame = "time", *kWithoutCells = "empty";
 constexpr std::string_view kPolygons = "bodies";       // the series whose cells are polygons
 constexpr size_t kLargestContainer = size_t{1} << 40;  // bytes
 
@@ -211,7 +211,7 @@ FrameContainer::FrameContainer(const std::string& folder, size_t frames)
 // The arrays of a frame, as if it had just been written.
 void FrameContainer::remember(const Hdf5Reader& reader, std::uint64_t frame) {
   for (const Hdf5Link& series : reader.group(frame)) {
-    if (series.name == kTime) continue;
+    if (series.name == kTimeOfFrame) continue;
     for (const Hdf5Link& part : reader.group(series.address)) {
       const std::string key = series.name + "/" + part.name;
       if (!part.name.ends_with("_data")) {
@@ -284,7 +284,7 @@ std::uint64_t FrameContainer::add_grid(const NamedGrid& of, const std::string& f
   };
   add_data("point_data", "Node", grid.of_points);
   add_data("cell_data", "Cell", grid.of_cells);
-  if (empty) links.push_back({kEmpty, links.front().address});
+  if (empty) links.push_back({kWithoutCells, links.front().address});
   return numbers_->add_group(links);
 }
 
@@ -296,7 +296,7 @@ void FrameContainer::add(double time, const std::vector<NamedGrid>& grids) {
   const std::vector<Vec2>& places = grids.front().grid.points;
   const Vec2 place = places.empty() ? Vec2(0, 0) : places.front();
   now_.clear();
-  std::vector<Hdf5Link> links{{kTime, numbers_->add(std::span(&time, 1))}};
+  std::vector<Hdf5Link> links{{kTimeOfFrame, numbers_->add(std::span(&time, 1))}};
   for (const NamedGrid& of : grids) {
     const bool first = &of == grids.data();
     std::string entry;
@@ -336,7 +336,7 @@ ContainedFrames::ContainedFrames(const std::string& folder)
     reader_.emplace(file_);
     for (const Hdf5Link& frame : reader_->root()) {
       frames_.push_back(frame.address);
-      times_.push_back(reader_->array(linked(frame.address, kTime)).values.at(0));
+      times_.push_back(reader_->array(linked(frame.address, kTimeOfFrame)).values.at(0));
     }
   });
 }
@@ -418,7 +418,7 @@ GridFile ContainedFrames::read(const std::string& series, size_t frame) const {
   guarded([&] {
     const std::uint64_t group = linked(frames_.at(frame), series);
     file.of_file["TimeValue"] = {1, {times_.at(frame)}};
-    if (find(group, kEmpty) != 0) return;
+    if (find(group, kWithoutCells) != 0) return;
     const Hdf5Array points = reader_->array(linked(group, "points"));
     if (points.columns != 2) throw std::runtime_error("is damaged");
     for (size_t i = 0; i + 1 < points.values.size(); i += 2) {

@@ -20,8 +20,11 @@ constexpr size_t kWorth = kSample * 7 / 8;
 // Compresses blocks as zlib does, with the memory for it kept.
 class Deflater {
  public:
-  explicit Deflater(int level) {
-    if (deflateInit(&stream_, level) != Z_OK) throw std::bad_alloc();
+  Deflater(int level, int strategy) {
+    constexpr int kWindow = 15, kMemory = 8;  // zlib's own choice
+    if (deflateInit2(&stream_, level, Z_DEFLATED, kWindow, kMemory, strategy) != Z_OK) {
+      throw std::bad_alloc();
+    }
   }
   ~Deflater() { deflateEnd(&stream_); }
   Deflater(const Deflater&) = delete;
@@ -82,11 +85,15 @@ class VtuText {
 
  private:
   // Numbers with much chance in their digits are stored as they are, which zlib would pack by a
-  // tenth at best, in most of the time that a file takes.
+  // tenth at best, in most of the time that a file takes. Of other numbers often nothing can be
+  // packed but the zeros along z, for which it is enough to look for runs.
   [[nodiscard]] Deflater& fit_for(std::string_view bytes) {
     if (bytes.size() < 2 * kSample) return fast_;
+    const std::string_view sample = bytes.substr(bytes.size() / 2, kSample);
     packed_.clear();
-    return fast_.add_to(packed_, bytes.substr(bytes.size() / 2, kSample)) < kWorth ? fast_ : none_;
+    const size_t packed = fast_.add_to(packed_, sample);
+    if (packed > kWorth) return none_;
+    return runs_.add_to(packed_, sample) < packed + packed / 8 ? runs_ : fast_;
   }
 
   void add_bytes(std::string_view bytes) {
@@ -103,7 +110,8 @@ class VtuText {
     add_base64(text, packed_);
   }
 
-  Deflater fast_{1}, none_{0};  // higher levels take up to twice as long for 2 %
+  // Higher levels take up to twice as long for 2 %.
+  Deflater fast_{1, Z_DEFAULT_STRATEGY}, runs_{1, Z_RLE}, none_{0, Z_DEFAULT_STRATEGY};
   std::string packed_;
 };
 

@@ -30,6 +30,15 @@ int default_rows(const Model& model, const OutputSettings& output) {
   return tracks || few ? 1000 : 100;
 }
 
+int default_frames(const Model& model) {
+  constexpr size_t kMany = 1000;
+  size_t parts = model.bodies.size();
+  for (const DeformableBody& body : model.deformables) {
+    parts += static_cast<size_t>(body.mesh.element_count());
+  }
+  return parts > kMany ? 20 : 100;
+}
+
 void OutputReader::track_by_default() {
   std::vector<int>& track = output_.track;
   for (size_t i = 0; i < model_.bodies.size(); ++i) {

@@ -17,6 +17,9 @@ namespace apothem {
 /// over many bodies only, each of which costs about half of a step.
 int default_rows(const Model& model, const OutputSettings& output);
 
+/// Frames of a scene that does not choose their number: fewer where each costs several steps.
+int default_frames(const Model& model);
+
 class OutputReader {
  public:
   /// The model is complete. `bodies` are the names of its bodies in the order of the scene. Both

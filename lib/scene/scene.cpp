@@ -178,6 +178,9 @@ class SceneReader {
     reader.track_by_default();
     if (output) reader.read(*output);
     scene_.frame_format = reader.frame_format();
+    if (!scene_.time.statics && !features_.uses(Feature::frames)) {
+      scene_.output.frames = default_frames(model_);
+    }
     if (!scene_.time.statics && !features_.uses(Feature::history_interval)) {
       scene_.output.history_interval = scene_.time.end / default_rows(model_, scene_.output);
     }
