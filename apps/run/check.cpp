@@ -110,9 +110,10 @@ void say_run_time(const Scene& scene, const Simulation& simulation, const Trial&
 }
 
 std::string size_text(double bytes) {
-  if (bytes < 1e6) return fmt::format("{:.2g} kB", bytes / 1e3);
-  return bytes < 1e9 ? fmt::format("{:.2g} MB", bytes / 1e6)
-                     : fmt::format("{:.2g} GB", bytes / 1e9);
+  const auto [unit, name] = bytes < 1e6   ? std::pair(1e3, "kB")
+                            : bytes < 1e9 ? std::pair(1e6, "MB")
+                                          : std::pair(1e9, "GB");
+  return fmt::format("{:.{}f} {}", bytes / unit, bytes < 10 * unit ? 1 : 0, name);
 }
 
 void say_output(const Scene& scene, bool empty_history, const OutputCost& cost) {

@@ -358,10 +358,10 @@ Hdf5Array Hdf5Reader::array(std::uint64_t address) const {
   array.is_whole = !real;
   const std::uint64_t width = real ? sizeof(double) : sizeof(std::int32_t);
   const auto size = get<std::uint64_t>(place, 10), at = get<std::uint64_t>(place, 2);
-  // What takes no room can be as long as a file says, which no frame needs.
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
-  if (size % width != 0 || size > kMost || array.columns == 0 || rows > kMost ||
-      array.columns > kMost || rows * array.columns * width != size) {
+  // What takes no room can be as long as a damaged file says, which no frame needs.
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 31, kMostEqual = std::uint64_t{1} << 28;
+  if (size % width != 0 || size > (at == kNowhere ? kMostEqual : kMost) || array.columns == 0 ||
+      rows > kMost || array.columns > kMost || rows * array.columns * width != size) {
     throw std::runtime_error("is damaged");
   }
   const auto number = [&](std::string_view raw, size_t k) {

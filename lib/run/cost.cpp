@@ -10,10 +10,14 @@ namespace apothem {
 namespace {
 
 // Measured on piles and meshes: a frame and what it adds for each vertex or node.
-constexpr double kFrameBytes = 12e3, kPointBytes = 150;
-constexpr double kFrameSeconds = 2e-3, kPointSeconds = 1e-5;
-constexpr double kNumberBytes = 19, kNumberSeconds = 1e-7;  // of a history
-constexpr double kLedgers = 17;                             // columns of energy.csv, momentum.csv
+struct FrameCost {
+  double bytes, point_bytes;
+  double seconds, point_seconds;
+};
+constexpr FrameCost kOfFiles{8e3, 150, 1e-3, 2e-6}, kOfContainer{12e3, 120, 1e-4, 3e-7};
+constexpr double kNumberBytes = 19, kNumberSeconds = 1e-7;     // of a history
+constexpr double kRowSeconds = 5e-6, kRowPointSeconds = 2e-8;  // sums that are made for it
+constexpr double kLedgers = 17;  // columns of energy.csv, momentum.csv
 
 constexpr double kMostFiles = 1e5, kMostBytes = 2e10, kMostSeconds = 86400;
 constexpr double kMostMemory = .5;  // of what there is
@@ -48,9 +52,12 @@ OutputCost output_cost(const Scene& scene, double steps) {
   const double series =
       4 + (scene.model.deformables.empty() ? 0. : 1.) + (scene.model.regions.empty() ? 0. : 1.);
   const double points = points_of(scene.model), numbers = rows * columns_of(output, scene.model);
-  cost.files = series * cost.frames;
-  cost.bytes = cost.frames * (kFrameBytes + kPointBytes * points) + kNumberBytes * numbers;
-  cost.seconds = cost.frames * (kFrameSeconds + kPointSeconds * points) + kNumberSeconds * numbers;
+  const bool contained = scene.frame_format == FrameFormat::xdmf;
+  const FrameCost& each = contained ? kOfContainer : kOfFiles;
+  cost.files = contained ? 3 : series * cost.frames;
+  cost.bytes = cost.frames * (each.bytes + each.point_bytes * points) + kNumberBytes * numbers;
+  cost.seconds = cost.frames * (each.seconds + each.point_seconds * points) +
+                 rows * (kRowSeconds + kRowPointSeconds * points) + kNumberSeconds * numbers;
   return cost;
 }
 

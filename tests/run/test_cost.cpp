@@ -33,6 +33,22 @@ TEST_CASE("the files and bytes of results are as many as estimated, to a factor"
   CHECK(cost.bytes > .4 * bytes);
   CHECK(cost.bytes < 2.5 * bytes);
   CHECK(excessive_costs(run.scene(), 1e4).empty());
+
+  // The same in one container.
+  const std::string output = "\"output\": {";
+  text.replace(text.find(output), output.size(), output + R"( "format": "xdmf", )");
+  Run contained(scene_of(folder, text), {.folder = folder / "contained"});
+  REQUIRE(contained.run() == Run::Status::done);
+  const OutputCost less = output_cost(contained.scene(), static_cast<double>(run.state().step));
+  bytes = 0;
+  for (const char* name : {"frames.h5", "frames.xdmf", "contacts.xdmf"}) {
+    bytes += static_cast<double>(
+        std::filesystem::file_size(folder / ("contained/" + std::string(name))));
+  }
+  CHECK(less.files == 3);
+  CHECK(less.bytes > .4 * bytes);
+  CHECK(less.bytes < 2.5 * bytes);
+  CHECK(less.seconds < cost.seconds);
 }
 
 TEST_CASE("absurd numbers of frames are named, but for those that no step has", "[run][cost]") {

@@ -36,7 +36,7 @@ std::string scene_with_rule(const std::string& rule, double x = 0) {
       { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-2, -1], [2, -1], [2, 0], [-2, 0]] },
       { "name": "block", "material": "rock", "position": [)" +
          std::to_string(x) +
-         R"(, 0.5], "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] } ],
+         R"(, 0.51], "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] } ],
     "stop": [ { "name": "rest", )" +
          rule + R"( } ], "time": { "end": 2 }, "output": { "frames": 1 } })";
 }
@@ -59,8 +59,8 @@ TEST_CASE("wrong uses are named with their remedy", "[program][messages]") {
   for (const Use& use : std::vector<Use>{
            {{"run", "-"}, {"-: is no file", "/dev/stdin"}, 2},
            {{"check", "-"}, {"-: is no file", "/dev/stdin"}, 2},
-           {{"run", scene, "--set", "time.step=0,3"},
-            {"must be a number", "set by time.step=0,3", "the number is written 0.3"},
+           {{"run", scene, "--set", "time.end=0,3"},
+            {"must be a number", "set by time.end=0,3", "the number is written 0.3"},
             2},
            {{"run", scene, "--set", "a=0,3"}, {"unknown key \"a\"", "set by a=0,3"}, 2},
            {{"picture", folder / "out", "-o", folder / "no/x.png"},
@@ -124,8 +124,7 @@ TEST_CASE("polygon says what its numbers mean", "[program][messages]") {
   const std::string long_one = folder.write("long.json", "[[0,0],[2,0],[2,1],[0,1]]");
   const std::string l = folder.write("l.json", "[[0,0],[4,0],[4,1],[1,1],[1,4],[0,4]]");
   const std::string two = folder.write(
-      "two.json",
-      "[[0,0],[2,0],[2,0.9],[3,0.9],[3,0],[5,0],[5,2],[3,2],[3,1.1],[2,1.1],[2,2],[0,2]]");
+      "two.json", "[[0,1],[1,0],[1.9,0.9],[3.1,0.9],[4,0],[5,1],[4,2],[3.1,1.1],[1.9,1.1],[1,2]]");
   const auto table = [&](const std::string& file, const char* reference) {
     return test::run({"polygon", file, "--reference", reference}, folder).out;
   };
@@ -139,7 +138,9 @@ TEST_CASE("polygon says what its numbers mean", "[program][messages]") {
   const std::string rooms = table(two, "roof");
   const size_t at = rooms.find("incircle centres");
   REQUIRE(at != std::string::npos);
-  CHECK(rooms.substr(at, rooms.find('\n', at) - at).find(" to ") == std::string::npos);
+  const std::string centres = rooms.substr(at, rooms.find('\n', at) - at);
+  CHECK(centres.find(" to ") == std::string::npos);
+  CHECK(centres.find("), (") != std::string::npos);
 }
 
 TEST_CASE("check has one plan: steps, output and depths", "[program][messages]") {
