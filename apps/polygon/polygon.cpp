@@ -149,7 +149,7 @@ std::string places(const Polygon& polygon, const std::vector<Vec2>& points) {
 
 // Whether each point of the segment between two centres is a centre: its middle is, too.
 bool is_segment(const Analysis& a, const Vec2& from, const Vec2& to) {
-  const Vec2 middle = (from + to) / 2;
+  const Vec2 middle = a.polygon.origin() + (from + to) / 2;
   double depth = HUGE_VAL;
   for (const std::vector<Vec2>& ring : rings_of(a.polygon)) {
     depth = std::min(depth, distance_to_ring(ring, middle));

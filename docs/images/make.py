@@ -88,9 +88,9 @@ def differences(kept, fresh):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("names", nargs="*", choices=[[], *PICTURES], help="all by default")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(PICTURES)}; all by default")
     parser.add_argument("--check", action="store_true", help="compare, and write nothing")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     if not shutil.which("gnuplot"):
         print("skipped: there is no gnuplot (Debian: gnuplot-nox)")
         return 77
