@@ -1,6 +1,6 @@
 // The own lengths of a pair: which part of each boundary counts where edges lie on each other. All
 // methods have to agree about it.
-#include "geometry/polygon/boundary_inside.hpp"
+#include "geometry/spatial/boundary_inside.hpp"
 
 #include <catch2/catch.hpp>
 
