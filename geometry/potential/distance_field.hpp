@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "geometry/polygon/cyclic.hpp"
@@ -48,7 +49,7 @@ struct PlacedDistance {
   bool capped;                      ///< whether phi is limited to 1
   const RingLinks* links =
       nullptr;  ///< neighbours of the vertices of a polygon with holes, or null
-  const EdgeTrees* trees = nullptr;  ///< of the edges where they are now, or null
+  const EdgeTrees* trees = nullptr;  ///< of the edges where they are now, or null; for double
 };
 
 /// Returns the integral of f(w) = sqrt(d2 + w^2) from w1 to w1 + h, and the integral of
@@ -195,16 +196,18 @@ class DistanceTrace {
     const auto cross = [&](int a, int b) {
       lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
     };
-    if (field.trees) {
-      field.trees->each(
-          [&](const Box& box) { return !lines_.passes(box.x0, box.y0, box.x1, box.y1); },
-          [&](int a) {
-            const int b = next(field.links, a, field.size);
-            lines_.place(a, a + 1);
-            lines_.place(b, b + 1);
-            cross(a, b);
-          });
-      return;
+    if constexpr (std::is_same_v<Real, double>) {
+      if (field.trees) {
+        field.trees->each(
+            [&](const Box& box) { return !lines_.passes(box.x0, box.y0, box.x1, box.y1); },
+            [&](int a) {
+              const int b = next(field.links, a, field.size);
+              lines_.place(a, a + 1);
+              lines_.place(b, b + 1);
+              cross(a, b);
+            });
+        return;
+      }
     }
     lines_.place(0, field.size);
     for (int a = 0; a < field.size; ++a) cross(a, next(field.links, a, field.size));
@@ -220,9 +223,8 @@ class DistanceTrace {
     if (field.capped) insert({1, 0, k_, -1, false}, s0, s1);
     insert_edge(field, first, s0, s1);
     insert_edge(field, second, s0, s1);
-    if (field.trees) {
-      insert_near(field, s0, s1);
-      return;
+    if constexpr (std::is_same_v<Real, double>) {
+      if (field.trees) return insert_near(field, s0, s1);
     }
     for (int i = 0; i < field.size; ++i) {
       if (i != first && i != second) insert_edge(field, i, s0, s1);
@@ -231,13 +233,11 @@ class DistanceTrace {
   }
 
   // Inserts the edges and vertices that are not farther away than the minimum so far.
-  void insert_near(const PlacedDistance<Real>& field, const Real& s0, const Real& s1) {
+  void insert_near(const PlacedDistance<double>& field, double s0, double s1) {
     constexpr double kSure = 1 + 1e-9;  // more than one by far more than round-off
-    const auto at = [&](const Real& s) {
-      return Vec2(static_cast<double>(px_ + s * ex_), static_cast<double>(py_ + s * ey_));
-    };
+    const auto at = [&](double s) { return Vec2(px_ + s * ex_, py_ + s * ey_); };
     field.trees->each_near_first(
-        at(s0), at(s1), [&] { return kSure * static_cast<double>(bound_ / field.slope); },
+        at(s0), at(s1), [&] { return kSure * bound_ / field.slope; },
         [&](int i) {
           insert_edge(field, i, s0, s1);
           if (std::binary_search(field.corners->begin(), field.corners->end(), i)) {
