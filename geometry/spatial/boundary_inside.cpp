@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "geometry/spatial/ring_tree.hpp"
 
 namespace apothem {
@@ -27,6 +27,9 @@ double side(const Vec2& p, const Vec2& q, const Vec2& v) {
   return CGAL::to_double(Rational((Rational(q.x()) - px) * (Rational(v.y()) - py) -
                                   (Rational(q.y()) - py) * (Rational(v.x()) - px)));
 }
+
+// Of a polygon's size: more than the round-off of a place on a line.
+constexpr double kSlack = 1e-9;
 
 // Which of the two sides of an edge is asked about.
 enum class Side { inner, outer };
@@ -69,6 +72,10 @@ class CutPolygon {
     for (int k = 0; k < polygon_.rings(); ++k) {
       cross_ring(p, q, side_of_edge, polygon_.ring(k), trees_[static_cast<size_t>(k)]);
     }
+    // Those behind q are left out; one of them ends the last part.
+    if (crossings_.size() % 2 != 0) {
+      crossings_.push_back({std::numeric_limits<double>::infinity(), &q, 0});
+    }
     std::sort(crossings_.begin(), crossings_.end(), before);
     for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const Place& first = std::max(crossings_[i], from, before);
@@ -85,26 +92,32 @@ class CutPolygon {
     return {direction.dot(near - polygon_[0]) + rest, &near, rest};
   }
 
-  // Adds the crossings of the line through p and q with a ring.
+  // Adds the crossings of the line through p and q with a ring, up to q. Of those far before p only
+  // their number counts, and it is even or odd as that of one line from the start of a run of edges
+  // to its end.
   void cross_ring(const Vec2& p, const Vec2& q, Side side_of_edge, std::span<const Vec2> ring,
                   const RingTree& tree) {
     const Vec2 e = q - p, direction = e.normalized();
     const bool inner = side_of_edge == Side::inner;
     const auto left = [&](double value) { return inner ? value > 0 : value >= 0; };
     // A box is on one side of the line if the corners are that are farthest to the left and right.
-    const auto meets = [&](const Box& box) {
+    const double slack = kSlack * box_.extent();
+    const auto judge = [&](const Box& box) {
+      const Vec2 farthest(e.x() > 0 ? box.x1 : box.x0, e.y() > 0 ? box.y1 : box.y0);
+      const Vec2 nearest(e.x() > 0 ? box.x0 : box.x1, e.y() > 0 ? box.y0 : box.y1);
+      if (direction.dot(nearest - q) > slack) return RunUse::none;
       const Vec2 leftmost(e.y() > 0 ? box.x0 : box.x1, e.x() > 0 ? box.y1 : box.y0);
       const Vec2 rightmost(e.y() > 0 ? box.x1 : box.x0, e.x() > 0 ? box.y0 : box.y1);
-      return left(side(p, q, leftmost)) && !left(side(p, q, rightmost));
+      if (!left(side(p, q, leftmost)) || left(side(p, q, rightmost))) return RunUse::none;
+      return direction.dot(farthest - p) < -slack ? RunUse::whole : RunUse::edges;
     };
-    int last = -1;  // the edge before
+    size_t last = ring.size();  // the vertex at the end of the line before
     double side_b = 0;
-    tree.each(meets, [&](int edge) {
-      const Vec2& a = ring[static_cast<size_t>(edge)];
-      const Vec2& b = after(ring, static_cast<size_t>(edge));
-      const double side_a = edge == last + 1 && last >= 0 ? side_b : side(p, q, a);
+    tree.each_line(judge, [&](size_t i, size_t k) {
+      const Vec2 &a = ring[i], &b = ring[k];
+      const double side_a = i == last ? side_b : side(p, q, a);
       side_b = side(p, q, b);
-      last = edge;
+      last = k;
       if (left(side_a) == left(side_b)) return;
       const double along = direction.dot(b - a) / (side_a - side_b);
       crossings_.push_back(std::abs(side_a) < std::abs(side_b) ? at(direction, a, side_a * along)
