@@ -47,6 +47,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/cyclic.hpp
   geometry/polygon/disjoint_sets.hpp
   geometry/polygon/line_crossings.hpp
+  geometry/polygon/place_grid.hpp
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp
   geometry/polygon/polygon_with_holes.hpp
@@ -66,10 +67,14 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/regions/boolean.hpp
   geometry/regions/repair.hpp
   geometry/regions/ring_faults.hpp
+  geometry/skeleton/node_places.hpp
   geometry/skeleton/roof.hpp
   geometry/skeleton/singular_area.hpp
   geometry/skeleton/skeleton.hpp
   geometry/spatial/boxes.hpp
+  geometry/spatial/edge_trees.hpp
+  geometry/spatial/ring_tree.hpp
+  geometry/spatial/strip.hpp
   mesh/check.hpp
   mesh/disc_mesh.hpp
   mesh/edges.hpp

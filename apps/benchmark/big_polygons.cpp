@@ -80,10 +80,10 @@ void add_outlines(std::vector<BenchmarkCase>& cases) {
            .on_request = true,
            .clock = n < 100 ? ClockKind::wall : ClockKind::processor});
     }
-    for (const int n : {100, 200, 500, 1000, 2000, 5000}) {
+    for (const int n : {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000}) {
       cases.push_back({.name = fmt::format("outline_pair/{}/{}", name, n),
                        .item = "vertex",
-                       .about = "force and energy of two outlines with distance fields",
+                       .about = "force, energy and area of two outlines with distance fields",
                        .prepare = [shape = shape, n](int) { return big_pair(shape, n); },
                        .size = static_cast<double>(n),
                        .on_request = true});

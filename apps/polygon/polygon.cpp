@@ -10,6 +10,7 @@
 #include "apps/process/work_line.hpp"
 #include "geometry/polygon/segment.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/skeleton/node_places.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/picture.hpp"
@@ -71,18 +72,29 @@ const char* arithmetic(const Skeleton& skeleton) { return skeleton.exact ? "exac
 Json world(const Polygon& polygon, const Vec2& local) {
   return {polygon.origin().x() + local.x(), polygon.origin().y() + local.y()};
 }
-template <class Points>
-Json world_list(const Polygon& polygon, const Points& points) {
+Json world_list(const Polygon& polygon, const std::vector<Vec2>& points) {
   Json list = Json::array();
   for (const Vec2& p : points) list.push_back(world(polygon, p));
   return list;
 }
 
+// The same of nodes of the skeleton and of centres of circles.
+template <class Points>
+Json place_list(const PlaceGrid& grid, const Points& points) {
+  Json list = Json::array();
+  for (const Vec2& local : points) {
+    const Vec2 p = grid.world(local);
+    list.push_back({p.x(), p.y()});
+  }
+  return list;
+}
+
 Json singular_json(const Polygon& polygon, const SingularArea& singular) {
-  Json points = world_list(polygon, singular.points);
+  const PlaceGrid grid(polygon);
+  Json points = place_list(grid, singular.points);
   Json segments = Json::array();
   for (const std::array<Vec2, 2>& ends : singular.segments) {
-    segments.push_back(world_list(polygon, ends));
+    segments.push_back(place_list(grid, ends));
     points.insert(points.end(), segments.back().begin(), segments.back().end());
   }
   Json polygons = Json::array();
@@ -97,11 +109,12 @@ Json singular_json(const Polygon& polygon, const SingularArea& singular) {
 }
 
 Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
+  const NodePlaces places(polygon, skeleton.nodes);
   std::map<int, Json> faces;  // in the order of the edges in the input
   for (int e = 0; e < polygon.size(); ++e) {
     Json ring = Json::array();
     for (const int i : skeleton.faces[e]) {
-      const Vec2 p = world_point(polygon, skeleton.nodes, i);
+      const Vec2 p = places[i];
       ring.push_back({p.x(), p.y(), skeleton.nodes[i].height});
     }
     const int edge = polygon.input_edge(e);
@@ -118,7 +131,7 @@ Json to_json(const Analysis& a) {
           {"polar_moment", a.moments.polar},
           {"holes", Json::parse(holes_json(polygon_of_rings(rings_of(a.polygon)).holes))},
           {"inradius", a.circle.radius},
-          {"incircle_centres", world_list(a.polygon, a.circle.centres)},
+          {"incircle_centres", place_list(PlaceGrid(a.polygon), a.circle.centres)},
           {"roof_height", a.skeleton.roof_height},
           {"reference_length", a.reference},
           {"singular_area", singular_json(a.polygon, a.singular)},
@@ -131,18 +144,15 @@ std::string text(const Json& object, int indent) {
   return object.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string place(const Polygon& polygon, const Vec2& local) {
-  const Vec2 p = polygon.origin() + local;
-  return fmt::format("({}, {})", p.x(), p.y());
-}
+std::string place(const Vec2& p) { return fmt::format("({}, {})", p.x(), p.y()); }
 
 // The table lists at most this many positions; --json lists all of them.
 constexpr size_t kListed = 8;
 
-std::string places(const Polygon& polygon, const std::vector<Vec2>& points) {
+std::string places(const PlaceGrid& grid, const std::vector<Vec2>& points) {
   std::string list;
   for (size_t i = 0; i < std::min(points.size(), kListed); ++i) {
-    list += (i == 0 ? "" : ", ") + place(polygon, points[i]);
+    list += (i == 0 ? "" : ", ") + place(grid.world(points[i]));
   }
   return points.size() > kListed ? fmt::format("{}, ... ({} in all)", list, points.size()) : list;
 }
@@ -158,13 +168,13 @@ bool is_segment(const Analysis& a, const Vec2& from, const Vec2& to) {
 }
 
 // Isolated centres, and segments of centres, whose ends stand one after the other.
-std::string centres(const Analysis& a) {
+std::string centres(const Analysis& a, const PlaceGrid& grid) {
   const std::vector<Vec2>& all = a.circle.centres;
   std::string text;
   for (size_t i = 0, shown = 0; i < all.size() && shown < kListed; ++i, ++shown) {
-    text += (i == 0 ? "" : ", ") + place(a.polygon, all[i]);
+    text += (i == 0 ? "" : ", ") + place(grid.world(all[i]));
     if (i + 1 < all.size() && is_segment(a, all[i], all[i + 1])) {
-      text += " to " + place(a.polygon, all[++i]);
+      text += " to " + place(grid.world(all[++i]));
     }
   }
   return all.size() > kListed ? fmt::format("{} m, ... ({} places in all)", text, all.size())
@@ -175,14 +185,15 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   const auto row = [](const char* name, const std::string& value) {
     fmt::print("{:<17} {}\n", name, value);
   };
+  const PlaceGrid grid(a.polygon);
   const bool convex = a.polygon.is_convex();
   row("vertices", fmt::format("{}, {}", a.polygon.size(), convex ? "convex" : "not convex"));
   if (a.polygon.has_holes()) row("holes", fmt::format("{}", a.polygon.rings() - 1));
   row("area", fmt::format("{} m^2", a.moments.area));
-  row("centroid", place(a.polygon, a.moments.centroid) + " m");
+  row("centroid", place(a.polygon.origin() + a.moments.centroid) + " m");
   row("polar moment", fmt::format("{} m^4, about the centroid", a.moments.polar));
   row("inradius", fmt::format("{} m", a.circle.radius));
-  row("incircle centres", centres(a));
+  row("incircle centres", centres(a, grid));
   row("roof height", fmt::format("{} m", a.skeleton.roof_height));
   row("reference length", fmt::format("{} m ({})", a.reference, reference_name));
   const bool beyond = a.reference > a.skeleton.roof_height;
@@ -196,12 +207,12 @@ void print_table(const Analysis& a, const std::string& reference_name) {
   }
   for (size_t i = 0; i < std::min(a.singular.segments.size(), kListed); ++i) {
     const auto& [start, end] = a.singular.segments[i];
-    row("  segment", place(a.polygon, start) + " to " + place(a.polygon, end) + " m");
+    row("  segment", place(grid.world(start)) + " to " + place(grid.world(end)) + " m");
   }
   if (a.singular.segments.size() > kListed) {
     row("  segments", fmt::format("{} in all", a.singular.segments.size()));
   }
-  if (!a.singular.points.empty()) row("  points", places(a.polygon, a.singular.points) + " m");
+  if (!a.singular.points.empty()) row("  points", places(grid, a.singular.points) + " m");
   row("faces", fmt::format("{}", a.polygon.size()));
   row("skeleton",
       fmt::format("in {}{}", a.skeleton.exact ? "exact arithmetic" : "double precision",

@@ -50,17 +50,25 @@ Skeleton skeleton_of(const Polygon& polygon) {
   });
 }
 
+// Nodes of a skeleton and centres of circles in the coordinates of the vertices.
+std::vector<Vec2> in_world(const Polygon& polygon, std::vector<Vec2> points) {
+  const PlaceGrid grid(polygon);
+  for (Vec2& p : points) p = grid.world(p);
+  return points;
+}
+
 py::object inscribed_circle_of(const Polygon& polygon) {
   const InscribedCircle circle = largest_inscribed_circle(polygon);
-  return result("InscribedCircle", circle.radius, array_of(circle.centres, polygon.origin()));
+  return result("InscribedCircle", circle.radius, array_of(in_world(polygon, circle.centres)));
 }
 
 py::object roof_of(const Polygon& polygon) {
   const Skeleton skeleton = skeleton_of(polygon);
+  const NodePlaces places(polygon, skeleton.nodes);
   py::array_t<double> nodes({static_cast<py::ssize_t>(skeleton.nodes.size()), py::ssize_t{3}});
   auto node = nodes.mutable_unchecked<2>();
   for (py::ssize_t i = 0; i < nodes.shape(0); ++i) {
-    const Vec2 p = world_point(polygon, skeleton.nodes, static_cast<int>(i));
+    const Vec2 p = places[static_cast<int>(i)];
     node(i, 0) = p.x();
     node(i, 1) = p.y();
     node(i, 2) = skeleton.nodes[static_cast<size_t>(i)].height;
@@ -79,20 +87,20 @@ py::object singular_area_of(const Polygon& polygon, std::optional<double> depth)
   const SingularArea area = singular_area(skeleton, depth.value_or(skeleton.roof_height));
   py::list segments;
   for (const std::array<Vec2, 2>& ends : area.segments) {
-    segments.append(array_of({ends[0], ends[1]}, polygon.origin()));
+    segments.append(array_of(in_world(polygon, {ends[0], ends[1]})));
   }
   return result("SingularArea", kind_name(area.kind()), area.area(),
-                array_of(area.points, polygon.origin()), segments,
+                array_of(in_world(polygon, area.points)), segments,
                 rings_of(apothem::rings_of(area.polygons), polygon.origin()));
 }
 
 py::object skeleton_object(const Polygon& polygon) {
   const Skeleton skeleton = skeleton_of(polygon);
+  const NodePlaces places(polygon, skeleton.nodes);
   py::list lines, edges;
   for (const Skeleton::Arc& arc : skeleton.arcs) {
     if (arc.left < 0 || arc.right < 0) continue;
-    const Vec2 start = world_point(polygon, skeleton.nodes, arc.start);
-    const Vec2 end = world_point(polygon, skeleton.nodes, arc.end);
+    const Vec2 start = places[arc.start], end = places[arc.end];
     if (start == end) continue;  // where more than three faces meet
     lines.append(array_of({start, end}));
     edges.append(py::make_tuple(arc.left, arc.right));

@@ -9,8 +9,8 @@
 #include "geometry/integrals/edge_trace.hpp"
 #include "geometry/integrals/overlap_energy.hpp"
 #include "geometry/integrals/placement.hpp"
-#include "geometry/polygon/boundary_inside.hpp"
 #include "geometry/potential/lower_envelope.hpp"
+#include "geometry/spatial/boundary_inside.hpp"
 
 namespace apothem {
 
@@ -130,19 +130,40 @@ std::vector<BoxedEdge> edges_in(const PlacedPotential& p, const Vec2& shift, con
   return edges;
 }
 
+// Whether the box of an edge of p, which is moved by `shift`, meets a box. `edges` are those that
+// may.
+bool any_meets(const PlacedPotential& p, const std::vector<BoxedEdge>& edges, const Vec2& shift,
+               const Box& box) {
+  if (!p.trees) {
+    return std::ranges::any_of(edges, [&](const BoxedEdge& edge) { return !apart(edge.box, box); });
+  }
+  const Box moved{box.x0 - shift.x(), box.y0 - shift.y(), box.x1 - shift.x(), box.y1 - shift.y()};
+  bool found = false;
+  p.trees->each([&](const Box& run) { return !found && !apart(run, moved); },
+                [&](int e) {
+                  const int end = p.end(e);
+                  found = found ||
+                          !apart(box_of(Vec2(p.x[e], p.y[e]), Vec2(p.x[end], p.y[end])), moved);
+                });
+  return found;
+}
+
+// Whether p, which is moved by `shift`, encloses a point.
+bool surrounds(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
+  return p.trees ? p.trees->encloses(point - shift) : encloses(p, shift, point);
+}
+
 // Extends a box by the edges of p that may be part of the boundary of its overlap with another
 // polygon, as far as they are in `reach`: those near an edge of the other polygon, and those inside
 // it. An edge that follows one away from all edges of the other is on the same side of these.
 // Returns whether an edge has been seen to lie outside the other polygon.
-template <class Inside>
-bool include_edges(const PlacedPotential& p, const std::vector<BoxedEdge>& edges,
-                   const std::vector<BoxedEdge>& others, const Box& reach, const Inside& inside,
-                   Box& box) {
+template <class Near, class Inside>
+bool include_edges(const PlacedPotential& p, const std::vector<BoxedEdge>& edges, const Near& nears,
+                   const Box& reach, const Inside& inside, Box& box) {
   int away = -1;  // start of the edge behind the last one that is away from all others
   bool is_inside = false, any_outside = static_cast<int>(edges.size()) < p.size;
   for (const BoxedEdge& edge : edges) {
-    const bool near = std::ranges::any_of(
-        others, [&](const BoxedEdge& other) { return !apart(edge.box, other.box); });
+    const bool near = nears(edge.box);
     if (!near && away != edge.index) is_inside = inside(edge.index);
     away = near ? -1 : p.end(edge.index);
     if (!near && !is_inside) any_outside = true;
@@ -165,13 +186,18 @@ OverlapBounds overlap_bounds(const PlacedPotential& p, const PlacedPotential& q,
                         .grown(slack);
   Box box;
   if (!(reach.x0 <= reach.x1 && reach.y0 <= reach.y1)) return {box, 0};
-  std::vector<BoxedEdge> edges_p = edges_in(p, Vec2::Zero(), reach);
+  const Vec2 zero = Vec2::Zero();
+  std::vector<BoxedEdge> edges_p = edges_in(p, zero, reach);
   const std::vector<BoxedEdge> edges_q = edges_in(q, shift, reach);
   for (BoxedEdge& edge : edges_p) edge.box = edge.box.grown(slack);
-  const auto in_q = [&](int e) { return encloses(q, shift, {p.x[e], p.y[e]}); };
-  const auto in_p = [&](int e) { return encloses(p, Vec2::Zero(), Vec2(q.x[e], q.y[e]) + shift); };
-  include_edges(p, edges_p, edges_q, reach, in_q, box);
-  const bool partly = include_edges(q, edges_q, edges_p, reach, in_p, box);
+  const auto near_q = [&](const Box& b) { return any_meets(q, edges_q, shift, b); };
+  const auto near_p = [&](const Box& b) {
+    return any_meets(p, edges_p, zero, p.trees ? b.grown(slack) : b);
+  };
+  const auto in_q = [&](int e) { return surrounds(q, shift, {p.x[e], p.y[e]}); };
+  const auto in_p = [&](int e) { return surrounds(p, zero, Vec2(q.x[e], q.y[e]) + shift); };
+  include_edges(p, edges_p, near_q, reach, in_q, box);
+  const bool partly = include_edges(q, edges_q, near_p, reach, in_p, box);
   box = box.grown(slack);
   const double diagonal = Vec2(box.x1 - box.x0, box.y1 - box.y0).norm();
   return {box, partly ? diagonal : std::numeric_limits<double>::infinity()};
@@ -366,7 +392,15 @@ PairResult edge_method(const Polygon& a, const Potential& potential_a, const Pol
   placed.about_centroids(pair);
   pair.own_length_a = own_length_a;
   pair.own_length_b = own_length_b;
-  result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
+  // The area by clipped triangles takes n^2 steps.
+  constexpr double kManyPairs = 64. * 64;  // of edges
+  if (static_cast<double>(a.size()) * b.size() > kManyPairs) {
+    OverlapEnergy memory;
+    result.volume = {pair_energy(placed.a.view, placed.b.view, Vec2::Zero(), memory),
+                     area_inside(a, b)};
+  } else {
+    result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
+  }
   return result;
 }
 

@@ -189,11 +189,12 @@ struct HeightRows {
   double* scratch;  ///< two rows for a shortened edge
 };
 
-/// Takes the memory from `buffer`, which grows if necessary.
+/// Takes the memory from `buffer`, which grows if necessary. Only a convex polygon needs rows for
+/// the vertices of the other one.
 inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b,
                               std::vector<double>& buffer) {
-  const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
-  const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
+  const size_t rows_a = b.convex() ? static_cast<size_t>(a.size + 1) * (b.size + 1) : 0;
+  const size_t rows_b = a.convex() ? static_cast<size_t>(b.size + 1) * (a.size + 1) : 0;
   const size_t scratch = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
   if (buffer.size() < rows_a + rows_b + scratch) buffer.resize(rows_a + rows_b + scratch);
   return {buffer.data(), buffer.data() + rows_a, buffer.data() + rows_a + rows_b};
@@ -207,7 +208,8 @@ inline PlacedRoof<double> placed_roof(const PlacedPotential& y, const RoofNodes&
 
 /// The distance field of a placed potential that has one.
 inline PlacedDistance<double> placed_distance(const PlacedPotential& y) {
-  return {y.size, y.x, y.y, y.gx, y.gy, y.distance->slope, &y.distance->corners, y.capped, y.links};
+  return {y.size,   y.x,     y.y,    y.gx, y.gy, y.distance->slope, &y.distance->corners,
+          y.capped, y.links, y.trees};
 }
 
 /// Adds a linear piece of phi of y, limited to 1 if y's potential is capped.

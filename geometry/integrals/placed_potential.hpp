@@ -30,6 +30,8 @@ struct PlacedPotential {
   double steepest = 0;                   ///< largest |g_i|, 1/m, or 0 if it is not known
   const BoundaryLayer* layer = nullptr;  ///< boundary layer, if it is not convex
   const RingLinks* links = nullptr;      ///< neighbours of its vertices if it has holes, or null
+  /// Of a polygon with a distance field and many edges that does not move, in the frame; or null.
+  const EdgeTrees* trees = nullptr;
   /// Position of the inner nodes of the roof in the frame: they are rotated by the angle with this
   /// cosine and sine, and then moved by `shift`, m.
   double cosine = 1, sine = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "geometry/integrals/edge_integral.hpp"
@@ -26,6 +27,11 @@ struct Placement {
     double radius = 0;
     for (size_t i = 2; i < n + 2; ++i)
       radius = std::max(radius, hypotenuse(x[i] - x[1], y[i] - y[1]));
+    // Each edge of the other polygon would look at all cells of a boundary layer, but the trees
+    // find the few features that are near it.
+    if (potential.distance && polygon.size() > EdgeTrees::kMany) {
+      trees.emplace(x.data() + 1, y.data() + 1, polygon.size(), potential.ring_links());
+    }
     // The boundary nodes are the vertices exactly as given. The inner nodes are shifted from the
     // coordinates of the polygon.
     view = {.x = x.data() + 1,
@@ -39,13 +45,15 @@ struct Placement {
             .reference = Vec2(x[1], y[1]),
             .radius = radius,
             .steepest = potential.steepest,
-            .layer = potential.layer ? &*potential.layer : nullptr,
+            .layer = potential.layer && !trees ? &*potential.layer : nullptr,
             .links = potential.ring_links(),
+            .trees = trees ? &*trees : nullptr,
             .shift = polygon.origin() - origin};
   }
   Placement(const Placement&) = delete;
   Placement& operator=(const Placement&) = delete;
   std::vector<double> x, y, gx, gy;
+  std::optional<EdgeTrees> trees;
   PlacedPotential view;
 };
 

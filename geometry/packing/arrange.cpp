@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kTries = 20000;
 
-std::vector<Vec2> ring_of(const Block& block, const Vec2& place, double scale = 1) {
-  return placed(block.shape, place, block.angle, scale * block.scale);
+std::vector<Vec2> ring_of(const Block& block, const Vec2& place) {
+  return placed(block.shape, place, block.angle, block.scale);
 }
 
 // The largest first, those of equal size in their order.
@@ -32,6 +32,14 @@ Vec2 random_place(const Box& box, RandomNumbers& random) {
 
 }  // namespace
 
+Rings holes_of(const Block& block, const BlockPose& pose) {
+  Rings holes;
+  for (const std::vector<Vec2>& hole : block.holes) {
+    holes.push_back(placed(hole, pose.place, pose.angle, pose.scale));
+  }
+  return holes;
+}
+
 Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
                              const std::vector<Block>& blocks) {
   Arrangement result;
@@ -49,7 +57,7 @@ Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
       result.rings[i].clear();
       return result;
     }
-    space.add(result.rings[i]);
+    space.add(result.rings[i], holes_of(blocks[i], result.poses[i]));
     ++result.placed;
   }
   return result;
@@ -132,7 +140,10 @@ class Growth {
     for (int attempt = 1; attempt <= kAttempts; ++attempt) {
       space_.clear();
       std::vector<Block> small = blocks_;
-      for (size_t i = 0; i < small.size(); ++i) small[i].scale *= parts_[i];
+      for (size_t i = 0; i < small.size(); ++i) {
+        small[i].scale *= parts_[i];
+        small[i].holes.clear();  // a block in a hole could not move as freely as the others
+      }
       result = insert_at_random(space_, random_, small);
       if (result.placed == count_) break;
       if (attempt == kAttempts) return result;

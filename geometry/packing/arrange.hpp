@@ -9,7 +9,8 @@
 
 namespace apothem {
 
-/// A block to be placed. No other block is put into its holes.
+/// A block to be placed. Random insertion may put smaller blocks into its holes; the other
+/// arrangements put none there.
 struct Block {
   std::vector<Vec2> shape;  ///< about its centroid, of area 1 without the holes (block_shapes.hpp)
   double scale = 1;         ///< square root of its area, m
@@ -23,6 +24,9 @@ struct BlockPose {
   double angle = 0;           ///< rad
   double scale = 1;           ///< m
 };
+
+/// The holes of a block where it has been placed.
+Rings holes_of(const Block& block, const BlockPose& pose);
 
 /// What has been placed, and what could not be.
 struct Arrangement {

@@ -117,15 +117,11 @@ void PackingSpace::leave(int solid) {
 void PackingSpace::add_obstacle(const PolygonWithHoles& polygon) {
   const Box box = box_of(polygon.outer);
   if (apart(box, box_.grown(clearance_))) return;
-  add(polygon.outer);
+  add(polygon.outer, polygon.holes);
   ++fixed_;
-  if (polygon.holes.empty()) return;
-  convex_.back() = 0;
-  hollows_.resize(static_cast<size_t>(fixed_));
-  hollows_.back() = polygon.holes;
 }
 
-void PackingSpace::add(std::span<const Vec2> ring) {
+void PackingSpace::add(std::span<const Vec2> ring, const Rings& holes) {
   points_.insert(points_.end(), ring.begin(), ring.end());
   first_.push_back(points_.size());
   boxes_.push_back(box_of(ring));
@@ -133,6 +129,10 @@ void PackingSpace::add(std::span<const Vec2> ring) {
   in_the_way_.push_back(-1);
   seen_.push_back(0);
   enter(static_cast<int>(boxes_.size()) - 1);
+  if (holes.empty()) return;
+  convex_.back() = 0;
+  hollows_.resize(boxes_.size());
+  hollows_.back() = holes;
 }
 
 void PackingSpace::move(int block, std::span<const Vec2> ring) {
@@ -153,6 +153,7 @@ void PackingSpace::clear() {
   seen_.resize(fixed_);
   first_.resize(fixed_ + 1);
   points_.resize(first_.back());
+  hollows_.resize(std::min(hollows_.size(), boxes_.size()));
 }
 
 bool PackingSpace::keeps_off_border(std::span<const Vec2> ring, const Box& box) const {
@@ -187,7 +188,7 @@ bool PackingSpace::keeps_off(std::span<const Vec2> ring, const Box& box, bool co
   return !(contains(box, boxes_[solid]) && strictly_inside(ring, other.front()));
 }
 
-// Whether a ring inside the outer ring of an obstacle lies in one of its holes.
+// Whether a ring inside the outer ring of a solid lies in one of its holes.
 bool PackingSpace::keeps_off_holes(std::span<const Vec2> ring, const Box& box,
                                    const Rings& holes) const {
   return std::ranges::any_of(holes, [&](const std::vector<Vec2>& hole) {

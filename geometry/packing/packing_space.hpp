@@ -25,9 +25,10 @@ class PackingSpace {
   [[nodiscard]] bool is_free(std::span<const Vec2> ring, int except = -1) const;
   /// The same, but the border of the region does not count.
   [[nodiscard]] bool is_clear(std::span<const Vec2> ring, int except = -1) const;
-  /// Puts a block there, which must be free. Blocks are numbered from 0.
-  void add(std::span<const Vec2> ring);
-  /// Moves a block to where it may lie. The ring has as many vertices as it had.
+  /// Puts a block there, which must be free. Blocks are numbered from 0. Later ones may lie in its
+  /// holes.
+  void add(std::span<const Vec2> ring, const Rings& holes = {});
+  /// Moves a block without holes to where it may lie. The ring has as many vertices as it had.
   void move(int block, std::span<const Vec2> ring);
   /// Takes all blocks out.
   void clear();
@@ -69,7 +70,7 @@ class PackingSpace {
   std::vector<Box> boxes_;
   std::vector<char> convex_;
   int fixed_ = 0;               // number of holes and obstacles
-  std::vector<Rings> hollows_;  // holes of the obstacles, up to the last one that has any
+  std::vector<Rings> hollows_;  // holes of obstacles and blocks, up to the last that has any
   std::vector<std::vector<int>> cells_;
   mutable std::vector<int> in_the_way_;      // per solid: what has been in its way last, or -1
   mutable std::vector<std::uint64_t> seen_;  // by which question each solid was looked at last

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace apothem {
 namespace {
 
-constexpr int kGridDigits = 52;
 // Each of the three steps in which points are made symmetric halves a sum.
 constexpr int kHalvings = 3;
 
@@ -83,16 +81,18 @@ CanonicalPose::CanonicalPose(const Polygon& polygon)
         }
         return Polygon(polygon_of_rings(images.polygons.front()));
       }()),
-      shift_(map_.undo(polygon_.origin()) - polygon.origin()) {}
+      grid_(polygon_),
+      given_(polygon.origin()),
+      given_anchor_(PlaceGrid(polygon).anchor()) {}
 
 std::vector<Vec2> CanonicalPose::back(std::vector<Vec2> points) const {
-  const int size = std::ilogb(bounding_box(polygon_).extent()) + 1;
-  const int digits = symmetries_.empty() ? kGridDigits : kGridDigits - kHalvings;
-  for (Vec2& p : points) {
-    for (double& c : p) c = std::ldexp(std::round(std::ldexp(c, digits - size)), size - digits);
-  }
+  // Places are counted from the anchors of the origins: between anchors, and between their images,
+  // all differences are exact, which those between vertices are not.
+  const Vec2 anchor = grid_.anchor();
+  const int digits = symmetries_.empty() ? PlaceGrid::kDigits : PlaceGrid::kDigits - kHalvings;
+  for (Vec2& p : points) p = grid_.rounded(p + (polygon_.origin() - anchor), digits);
   for (const AxisMap& symmetry : symmetries_) {
-    const Vec2 shift = symmetry(polygon_.origin()) - polygon_.origin();
+    const Vec2 shift = symmetry(anchor) - anchor;
     std::vector<Vec2> images;
     images.reserve(points.size());
     for (const Vec2& p : points) images.emplace_back(symmetry(p) + shift);
@@ -104,7 +104,8 @@ std::vector<Vec2> CanonicalPose::back(std::vector<Vec2> points) const {
           2;
     }
   }
-  for (Vec2& p : points) p = map_.undo(p) + shift_;
+  const Vec2 shift = map_.undo(anchor) - given_anchor_;
+  for (Vec2& p : points) p = (map_.undo(p) + shift) - (given_ - given_anchor_);
   return points;
 }
 

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "geometry/polygon/place_grid.hpp"
 #include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
@@ -40,18 +41,19 @@ class CanonicalPose {
   [[nodiscard]] const Polygon& polygon() const { return polygon_; }
 
   /// Points that have been computed in this pose, relative to the origin of the polygon there, in
-  /// the coordinates relative to the origin of the given polygon. They are rounded to multiples of
-  /// 2^-52 of the polygon's size, so that it does not matter to which vertex they are relative
-  /// where the vertices are such multiples. If the polygon is symmetric about the origin or a line
-  /// through it, its pose is not unique; the points are then rounded to 2^-49 of the size and made
-  /// as symmetric as the polygon is, each together with those nearest to its images.
+  /// the coordinates relative to the origin of the given polygon. They are rounded to places of
+  /// the PlaceGrid, whose world() gives the same ones for all images of a polygon, to the last bit.
+  /// If the polygon is symmetric about the origin or a line through it, its pose is not unique; the
+  /// points are then rounded to 2^-49 of the size and made as symmetric as the polygon is, each
+  /// together with those nearest to its images.
   [[nodiscard]] std::vector<Vec2> back(std::vector<Vec2> points) const;
 
  private:
   AxisMap map_;                      // into this pose
   std::vector<AxisMap> symmetries_;  // of the polygon in this pose
   Polygon polygon_;
-  Vec2 shift_;  // between the two origins
+  PlaceGrid grid_;
+  Vec2 given_, given_anchor_;  // origin of the given polygon and its anchor
 };
 
 }  // namespace apothem

@@ -33,6 +33,14 @@ class LineCrossings {
     for (int i = first; i < last; ++i) left[i] = side[i] >= 0;
   }
 
+  /// True if place() finds all nodes in a box on the same side of the line. Rounding keeps the
+  /// order of numbers, so that this has no tolerance.
+  [[nodiscard]] bool passes(const Real& x0, const Real& y0, const Real& x1, const Real& y1) const {
+    const Real most = ex_ * ((ex_ > 0 ? y1 : y0) - py_) - ey_ * ((ey_ > 0 ? x0 : x1) - px_);
+    const Real least = ex_ * ((ex_ > 0 ? y0 : y1) - py_) - ey_ * ((ey_ > 0 ? x1 : x0) - px_);
+    return least >= 0 || !(most >= 0);
+  }
+
   /// True if the line crosses the arc from node a to node b, both of which have been placed.
   [[nodiscard]] bool crosses(int a, int b) const { return left_[a] != left_[b]; }
 

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "geometry/polygon/cyclic.hpp"
@@ -20,6 +21,7 @@
 #include "geometry/polygon/polygon.hpp"
 #include "geometry/polygon/segment_moments.hpp"
 #include "geometry/potential/piecewise_minimum.hpp"
+#include "geometry/spatial/edge_trees.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -47,6 +49,7 @@ struct PlacedDistance {
   bool capped;                      ///< whether phi is limited to 1
   const RingLinks* links =
       nullptr;  ///< neighbours of the vertices of a polygon with holes, or null
+  const EdgeTrees* trees = nullptr;  ///< of the edges where they are now, or null; for double
 };
 
 /// Returns the integral of f(w) = sqrt(d2 + w^2) from w1 to w1 + h, and the integral of
@@ -111,13 +114,7 @@ class DistanceTrace {
     using std::sqrt;
     px_ = px, py_ = py, ex_ = ex, ey_ = ey;
     k_ = sqrt(ex * ex + ey * ey) * field.slope;
-    lines_.set(field.size, field.x, field.y, px, py, ex, ey);
-    lines_.place(0, field.size);
-    crossings_.clear();
-    for (int a = 0; a < field.size; ++a) {
-      const int b = next(field.links, a, field.size);
-      lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
-    }
+    find_crossings(field);
     std::ranges::sort(crossings_, [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
     for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const Crossing& a = crossings_[i];
@@ -192,6 +189,30 @@ class DistanceTrace {
     int edge;
   };
 
+  // Finds the crossings of the line p + s e with the edges.
+  void find_crossings(const PlacedDistance<Real>& field) {
+    lines_.set(field.size, field.x, field.y, px_, py_, ex_, ey_);
+    crossings_.clear();
+    const auto cross = [&](int a, int b) {
+      lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
+    };
+    if constexpr (std::is_same_v<Real, double>) {
+      if (field.trees) {
+        field.trees->each(
+            [&](const Box& box) { return !lines_.passes(box.x0, box.y0, box.x1, box.y1); },
+            [&](int a) {
+              const int b = next(field.links, a, field.size);
+              lines_.place(a, a + 1);
+              lines_.place(b, b + 1);
+              cross(a, b);
+            });
+        return;
+      }
+    }
+    lines_.place(0, field.size);
+    for (int a = 0; a < field.size; ++a) cross(a, next(field.links, a, field.size));
+  }
+
   // Finds the minimum over all edges and vertices between s0 and s1. The two edges that the segment
   // crosses come first, because they are probably near; what is farther away than the minimum so
   // far is skipped.
@@ -202,10 +223,27 @@ class DistanceTrace {
     if (field.capped) insert({1, 0, k_, -1, false}, s0, s1);
     insert_edge(field, first, s0, s1);
     insert_edge(field, second, s0, s1);
+    if constexpr (std::is_same_v<Real, double>) {
+      if (field.trees) return insert_near(field, s0, s1);
+    }
     for (int i = 0; i < field.size; ++i) {
       if (i != first && i != second) insert_edge(field, i, s0, s1);
     }
     for (const int i : *field.corners) insert_corner(field, i, s0, s1);
+  }
+
+  // Inserts the edges and vertices that are not farther away than the minimum so far.
+  void insert_near(const PlacedDistance<double>& field, double s0, double s1) {
+    constexpr double kSure = 1 + 1e-9;  // more than one by far more than round-off
+    const auto at = [&](double s) { return Vec2(px_ + s * ex_, py_ + s * ey_); };
+    field.trees->each_near_first(
+        at(s0), at(s1), [&] { return kSure * bound_ / field.slope; },
+        [&](int i) {
+          insert_edge(field, i, s0, s1);
+          if (std::binary_search(field.corners->begin(), field.corners->end(), i)) {
+            insert_corner(field, i, s0, s1);
+          }
+        });
   }
 
   void insert_edge(const PlacedDistance<Real>& field, int i, const Real& s0, const Real& s1) {

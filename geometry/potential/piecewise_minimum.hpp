@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -36,13 +37,18 @@ class PiecewiseMinimum {
   }
 
   /// Adds the function f on the interval from `from` to `to`. Returns true if f is the lowest
-  /// somewhere. Nothing is allocated once the buffers are large enough.
+  /// somewhere. Only pieces that its interval meets are looked at. Nothing is allocated once the
+  /// buffers are large enough.
   bool insert(const Function& f, const Real& from, const Real& to) {
     next_.clear();
     bool changed = false;
-    for (size_t i = 0; i < pieces_.size(); ++i) {
-      const Piece& piece = pieces_[i];
-      const Real& stop = end(i);
+    const auto starts_behind = [](const Real& s, const Piece& piece) { return s < piece.from; };
+    const auto behind = std::upper_bound(pieces_.begin(), pieces_.end(), from, starts_behind);
+    const auto first = static_cast<size_t>(behind - pieces_.begin()) - (behind != pieces_.begin());
+    size_t last = first;
+    for (; last < pieces_.size() && (last == first || pieces_[last].from < to); ++last) {
+      const Piece& piece = pieces_[last];
+      const Real& stop = end(last);
       const Real a = std::max(piece.from, from);
       const Real b = std::min(stop, to);
       if (!(a < b)) {
@@ -53,7 +59,7 @@ class PiecewiseMinimum {
       changed |= merge(f, piece, a, b);
       if (b < stop) keep(b, piece);
     }
-    if (changed) std::swap(pieces_, next_);
+    if (changed) replace(first, last);
     return changed;
   }
 
@@ -67,6 +73,17 @@ class PiecewiseMinimum {
   }
 
  private:
+  // Puts next_ in the place of the pieces first to last - 1.
+  void replace(size_t first, size_t last) {
+    const size_t both = std::min(last - first, next_.size());
+    const auto at = [](auto& list, size_t i) {
+      return list.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::copy(next_.begin(), at(next_, both), at(pieces_, first));
+    pieces_.erase(at(pieces_, first + both), at(pieces_, last));
+    pieces_.insert(at(pieces_, first + both), at(next_, both), next_.end());
+  }
+
   // Appends the minimum of f and of the function of `piece` between a and b. Returns true if f is
   // lower somewhere.
   bool merge(const Function& f, const Piece& piece, const Real& a, const Real& b) {

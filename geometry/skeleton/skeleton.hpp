@@ -37,7 +37,7 @@ class SkeletonFailure : public std::runtime_error {
 struct Skeleton {
   /// A node of the skeleton.
   struct Node {
-    Vec2 point;     ///< position relative to polygon.origin(), m
+    Vec2 point;     ///< position relative to polygon.origin(), m; see also node_places.hpp
     double height;  ///< distance to the lines of all edges whose faces meet here, m
   };
   /// A straight arc between two nodes.
@@ -54,12 +54,6 @@ struct Skeleton {
   int attempts = 1;        ///< number of constructions until one passed the laws
   bool exact = false;      ///< true if made with exact decisions about events
 };
-
-/// Position of node i in the coordinates of the polygon's vertices. For i < polygon.size() it is
-/// vertex i to the last bit.
-inline Vec2 world_point(const Polygon& polygon, const std::vector<Skeleton::Node>& nodes, int i) {
-  return i < polygon.size() ? polygon[i] : Vec2(polygon.origin() + nodes[i].point);
-}
 
 /// The largest number of vertices of a polygon whose skeleton is constructed.
 inline constexpr int kMostVertices = 100000;

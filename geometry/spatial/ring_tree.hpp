@@ -37,6 +37,16 @@ class RingTree {
     if (!ring_.empty()) each(meets, f, 0, 0, ring_.size());
   }
 
+  /// Calls f(edge) for edges, roughly those first around which there are boxes with a small
+  /// distance(box). It leaves out only those around which there is a box whose distance is larger
+  /// than reach() when its turn comes; reach() may become smaller meanwhile.
+  template <class Distance, class Reach, class F>
+  void each_near_first(const Distance& distance, const Reach& reach, const F& f) const {
+    if (!ring_.empty()) {
+      each_near_first(distance, reach, f, {0, 0, ring_.size(), distance(boxes_[0])});
+    }
+  }
+
   /// Calls f(from, to) for lines from one point of the ring to another, in ascending order. They
   /// are edges, but judge(box) may say that a run of edges in the box is left out, or that one line
   /// from its first point to its last one does for all of it.
@@ -90,6 +100,27 @@ class RingTree {
       return;
     }
     for (size_t e = first; e < end; ++e) f(static_cast<int>(e));
+  }
+
+  // A run of edges and the distance of its box.
+  struct Run {
+    size_t i, first, end;
+    double distance;
+  };
+  template <class Distance, class Reach, class F>
+  void each_near_first(const Distance& distance, const Reach& reach, const F& f,
+                       const Run& run) const {
+    if (run.distance > reach()) return;
+    if (run.end - run.first > kRun) {
+      const size_t middle = (run.first + run.end) / 2;
+      Run near{2 * run.i + 1, run.first, middle, distance(boxes_[2 * run.i + 1])};
+      Run far{2 * run.i + 2, middle, run.end, distance(boxes_[2 * run.i + 2])};
+      if (far.distance < near.distance) std::swap(near, far);
+      each_near_first(distance, reach, f, near);
+      each_near_first(distance, reach, f, far);
+      return;
+    }
+    for (size_t e = run.first; e < run.end; ++e) f(static_cast<int>(e));
   }
 
   template <class Judge, class F>

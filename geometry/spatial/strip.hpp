@@ -1,6 +1,7 @@
 // What is near a segment, for trees of boxes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/polygon/point.hpp"
@@ -32,6 +33,30 @@ class Strip {
   Vec2 start_;
   Vec2 normal_ = Vec2::Zero();
   double distance_;
+};
+
+/// How far boxes are from the segment from a to b.
+class SegmentDistance {
+ public:
+  SegmentDistance(const Vec2& a, const Vec2& b) : around_(box_of(a, b)), start_(a) {
+    const Vec2 side = b - a;
+    const double length = side.norm();
+    if (length > 0) normal_ = {-side.y() / length, side.x() / length};
+  }
+
+  /// No point of the box is nearer than this, up to round-off.
+  [[nodiscard]] double least(const Box& box) const {
+    const Vec2 gap(std::max({0., box.x0 - around_.x1, around_.x0 - box.x1}),
+                   std::max({0., box.y0 - around_.y1, around_.y0 - box.y1}));
+    const Vec2 half((box.x1 - box.x0) / 2, (box.y1 - box.y0) / 2);
+    const Vec2 centre = Vec2(box.x0, box.y0) + half - start_;
+    return std::max(gap.norm(), std::abs(normal_.dot(centre)) - normal_.cwiseAbs().dot(half));
+  }
+
+ private:
+  Box around_;
+  Vec2 start_;
+  Vec2 normal_ = Vec2::Zero();
 };
 
 }  // namespace apothem

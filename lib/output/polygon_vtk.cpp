@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "geometry/skeleton/node_places.hpp"
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/vtk_grid.hpp"
@@ -17,12 +18,13 @@ namespace {
 
 std::string faces(const Polygon& polygon, const Skeleton& skeleton, double reference) {
   const CutFaces cut = cut_faces(skeleton, reference);
+  const NodePlaces places(polygon, cut.nodes);
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkDoubleArray> height = doubles("roof_height", 1);
   vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
   for (int i = 0; i < static_cast<int>(cut.nodes.size()); ++i) {
-    const Vec2 p = world_point(polygon, cut.nodes, i);
+    const Vec2 p = places[i];
     points->InsertNextPoint(p.x(), p.y(), 0);
     height->InsertNextValue(cut.nodes[i].height);
     phi->InsertNextValue(std::min(1.0, cut.nodes[i].height / reference));

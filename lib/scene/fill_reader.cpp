@@ -249,14 +249,6 @@ class Fill {
     return placed;
   }
 
-  static Rings holes_of(const Block& block, const BlockPose& pose) {
-    Rings holes;
-    for (const std::vector<Vec2>& hole : block.holes) {
-      holes.push_back(placed(hole, pose.place, pose.angle, pose.scale));
-    }
-    return holes;
-  }
-
   // The numbers of blocks are such that neighbours in space are near each other in memory.
   static std::vector<int> along_curve(const std::vector<std::vector<Vec2>>& rings) {
     std::vector<Vec2> middles;

@@ -5,8 +5,10 @@
 #include "geometry/polygon/canonical_pose.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/skeleton/exact_front.hpp"
+#include "geometry/skeleton/node_places.hpp"
 #include "tests/geometry/skeleton/exact_wavefront.hpp"
 #include "tests/geometry/skeleton/holed_polygons.hpp"
+#include "tests/public_rings.hpp"
 
 using namespace apothem;
 using test::ExactWavefront;
@@ -19,13 +21,14 @@ using Faces = std::map<std::array<double, 4>, std::vector<Corner>>;  // by the e
 
 // The faces of a skeleton of a mapped polygon, in the coordinates of the original.
 Faces faces_before(const Map& map, const Polygon& polygon, const Skeleton& skeleton) {
+  const NodePlaces places(polygon, skeleton.nodes);
   Faces faces;
   for (int e = 0; e < polygon.size(); ++e) {
     Vec2 a = map.undo(polygon[e]), b = map.undo(polygon.after(e));
     if (std::pair(b.x(), b.y()) < std::pair(a.x(), a.y())) std::swap(a, b);
     std::vector<Corner> corners;
     for (const int i : skeleton.faces[e]) {
-      const Vec2 p = map.undo(world_point(polygon, skeleton.nodes, i));
+      const Vec2 p = map.undo(places[i]);
       corners.push_back({p.x(), p.y(), skeleton.nodes[i].height / map.scale});
     }
     std::sort(corners.begin(), corners.end());
@@ -80,9 +83,10 @@ void require_same_roof(const Polygon& polygon) {
 
 using Centres = std::set<std::array<double, 2>>;
 Centres centres_before(const Map& map, const Polygon& polygon, const InscribedCircle& circle) {
+  const PlaceGrid grid(polygon);
   Centres centres;
   for (const Vec2& c : circle.centres) {
-    const Vec2 p = map.undo(polygon.origin() + c);
+    const Vec2 p = map.undo(grid.world(c));
     centres.insert({p.x(), p.y()});
   }
   return centres;
@@ -144,6 +148,59 @@ TEST_CASE("tied events around holes: no map of the rings changes a bit of the in
   for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(500)); ++i) {
     INFO("polygon " << i);
     require_same_circle(test::random_tied_with_holes(random, i));
+  }
+}
+
+namespace {
+
+// A polygon near the axes whose coordinates have digits below those of its size: some of what
+// coincides in whole numbers does so up to round-off.
+Polygon random_fine(test::SeededRandom& random, int i) {
+  const Polygon whole =
+      i % 4 == 0 ? samples::random_star_shaped(random, random.integer(4, 90), random.uniform(.1, 1))
+      : i % 4 == 1 ? test::random_tied_with_holes(random, i)
+                   : test::random_tied(random, i);
+  const double factor = random.uniform(.1, 1);
+  const double extent = factor * bounding_box(whole).extent();
+  const Vec2 shift(random.uniform(-extent, extent), random.uniform(-extent, extent));
+  Rings rings = rings_of(whole);
+  for (std::vector<Vec2>& ring : rings) {
+    for (Vec2& v : ring) v = factor * v + shift;
+  }
+  return Polygon(polygon_of_rings(rings));
+}
+
+}  // namespace
+
+TEST_CASE("fine coordinates: no map of the rings changes a bit of roof, faces and circle",
+          "[skeleton]") {
+  test::SeededRandom random(440);
+  int fine = 0;
+  for (int i = 0; i < (test::long_run() ? 5000 : test::scaled(100)); ++i) {
+    const Polygon polygon = random_fine(random, i);
+    INFO("polygon " << i);
+    if (PlaceGrid(polygon).anchor() != polygon.origin()) ++fine;
+    require_same_roof(polygon);
+    require_same_circle(polygon);
+  }
+  CHECK(fine > test::least(10));
+}
+
+TEST_CASE("public rings: no map of the ring changes a bit of roof, faces and circle",
+          "[skeleton]") {
+  std::uint64_t number = 0;
+  for (const auto& [name, line, ring] : test::public_rings(test::long_run() ? 2500 : 40)) {
+    if (!test::long_run() && (++number + test::chosen_seed()) % 16 != 0) continue;
+    std::optional<Polygon> polygon;
+    try {
+      polygon.emplace(ring);
+      largest_inscribed_circle(*polygon);  // refuses what is too thin
+    } catch (const InvalidPolygon&) {
+      continue;
+    }
+    INFO(name);
+    require_same_roof(*polygon);
+    require_same_circle(*polygon);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "geometry/polygon/segment.hpp"
+#include "geometry/spatial/edge_trees.hpp"
 #include "geometry/spatial/point_tree.hpp"
 #include "geometry/spatial/ring_tree.hpp"
 #include "tests/support.hpp"
@@ -114,4 +115,37 @@ TEST_CASE("lines of a ring: runs are left out, or one line stands for them", "[b
                  [&](size_t i, size_t j) { found.emplace_back(i, j); });
   CHECK(found == std::vector<std::pair<size_t, size_t>>{{0, 0}});
   tree.each_line([](const Box&) { return RunUse::none; }, [&](size_t, size_t) { FAIL(); });
+}
+
+TEST_CASE("the trees of a polygon's edges leave out none that is within reach of a segment",
+          "[boxes]") {
+  test::SeededRandom random(94);
+  int left_out = 0;
+  for (int round = 0; round < test::scaled(400); ++round) {
+    std::vector<Vec2> points;
+    RingLinks links;
+    for (int ring = 0; ring < 2; ++ring) {
+      const std::vector<Vec2> more = random_points(random, random.integer(3, 120));
+      points.insert(points.end(), more.begin(), more.end());
+      links.add(static_cast<int>(more.size()));
+    }
+    const int n = static_cast<int>(points.size());
+    std::vector<double> x, y;
+    for (const Vec2& p : points) x.push_back(p.x()), y.push_back(p.y());
+    const EdgeTrees trees(x.data(), y.data(), n, &links);
+    const std::vector<Vec2> ends = random_points(random, 2);
+    const Vec2 &a = ends[0], &b = ends[1];
+    const double reach = random.uniform(0, 1);
+    std::set<int> found;
+    trees.each_near_first(
+        a, b, [&] { return reach; }, [&](int e) { found.insert(e); });
+    for (int e = 0; e < n; ++e) {
+      const Vec2 &p = points[e], &q = points[next(&links, e, n)];
+      const double of_ends = std::sqrt(std::min(nearest_on_segment(p - a, b - a).distance2,
+                                                nearest_on_segment(q - a, b - a).distance2));
+      if (of_ends < reach) REQUIRE(found.count(e) == 1);
+    }
+    left_out += n - static_cast<int>(found.size());
+  }
+  CHECK(left_out > test::least(100));
 }

@@ -1,6 +1,6 @@
 // The own lengths of a pair: which part of each boundary counts where edges lie on each other. All
 // methods have to agree about it.
-#include "geometry/polygon/boundary_inside.hpp"
+#include "geometry/spatial/boundary_inside.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -108,5 +108,34 @@ TEST_CASE("own lengths of edges that are shared at any angle", "[own-length]") {
         test::kernel(above, make_potential(above), below, make_potential(below));
     CHECK(kernel.weight < 1e-15);  // decided with rounded heights
     CHECK(test::edge(flat, above).integral.own_length_b == Approx(shared).epsilon(1e-14));
+  }
+}
+
+// Combs and stars of so many edges that trees find what counts, against the exact overlap. Shifts
+// by whole numbers lay many edges on each other.
+TEST_CASE("the boundary and the area inside of polygons of many vertices", "[own-length]") {
+  test::SeededRandom random(93);
+  for (int i = 0; i < test::scaled(24); ++i) {
+    const Polygon a = i % 2 == 0 ? samples::comb(random.integer(20, 40), 9)
+                                 : samples::random_star_shaped(random, 120, .7);
+    const double grid = i % 4 == 0 ? 1 : 1e-3;
+    const Vec2 reach = .5 * Vec2::Constant(bounding_box(a).extent());
+    const auto step = [&](double most) {
+      return grid * std::round(random.uniform(0, most) / grid);
+    };
+    const Polygon b = samples::shifted(a, {step(reach.x()), step(i % 2 == 0 ? 5 : reach.y())});
+    const PotentialChoice choice{.field = PotentialChoice::Field::distance,
+                                 .reference = PotentialChoice::Reference::inscribed_circle};
+    const PairResult exact =
+        overlap_method(a, make_potential(a, choice), b, make_potential(b, choice));
+    const PairResult edge = edge_method(a, make_potential(a, choice), b, make_potential(b, choice));
+    INFO("pair " << i);
+    const double length = exact.integral.own_length_a + exact.integral.own_length_b;
+    CHECK(std::abs(boundary_inside(a, b) - exact.integral.own_length_a) <= 1e-12 * length);
+    CHECK(std::abs(boundary_inside(b, a) - exact.integral.own_length_b) <= 1e-12 * length);
+    CHECK(std::abs(area_inside(a, b) - exact.volume.overlap_area) <= 1e-12 * length);
+    CHECK(std::abs(area_inside(b, a) - exact.volume.overlap_area) <= 1e-12 * length);
+    CHECK((edge.integral.force - exact.integral.force).norm() <= 1e-12 * exact.integral.weight);
+    CHECK(std::abs(edge.volume.energy - exact.volume.energy) <= 1e-12 * length);
   }
 }
