@@ -34,6 +34,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/integrals/edge_sums.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/convex_pairs.hpp
+  geometry/integrals/convex_window.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp
   geometry/integrals/pair_integral.hpp
