@@ -6,11 +6,13 @@
 #include "geometry/exact/overlap.hpp"
 #include "geometry/exact/pair_methods.hpp"
 #include "geometry/meshing/voronoi.hpp"
+#include "geometry/polygon/place_grid.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/potential/point_values.hpp"
 #include "geometry/regions/boolean.hpp"
 #include "geometry/regions/repair.hpp"
+#include "geometry/skeleton/node_places.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem::python {
