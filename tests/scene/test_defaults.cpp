@@ -94,7 +94,7 @@ std::string digest(const Scene& s) {
   add(t.statics, t.load_steps, t.tolerance, t.fixed_step.value_or(0), t.settled, t.accuracy,
       t.onsets, static_cast<int>(t.scheme));
   add(s.rigid, t.automatic_load_steps);
-  add(s.output.frames, s.output.checkpoint_interval.value_or(0));
+  add(s.output.frames, s.output.checkpoint_interval.value_or(0), int(s.frame_format));
   return text;
 }
 
@@ -152,6 +152,7 @@ std::vector<Default> settings_defaults() {
       {"/properties/time/properties/accuracy", rigid(), "/time/accuracy", 1e-3},
       {"/properties/time/properties/onsets", rigid(), "/time/onsets", "plain"},
       {"/properties/output/properties/frames", rigid(), "/output/frames", 7},
+      {"/properties/output/properties/format", rigid(), "/output/format", "xdmf"},
       {"/properties/output/properties/checkpoint", rigid(), "/output/checkpoint", false},
   };
 }

@@ -79,7 +79,7 @@ TEST_CASE("a setting that leads nowhere names the path and what is near", "[scen
          "/bodies: ", "has no item of the name \"blok\"; did you mean \"block\"?"},
         {"bodies.7.spin=1", "/bodies: ", "has no item 7: it has 3, counted from 0"},
         {"time.end.x=1", "/time/end: ", "has no keys and no items, as \"time.end.x=1\" asks for"},
-        {"time.end=soon", "/time/end: ", "must be a number in s, not a string, set by \"time.end"},
+        {"time.end=soon", "/time/end: ", "must be a number in s, not a string, set by time.end"},
         {"time..end=1", "scene.json: ", "the path has an empty part"},
         {"bodies.block.polygon=[[0,0],[1,0]]", "/bodies/1/polygon", "at least 3"}}) {
     INFO(setting);

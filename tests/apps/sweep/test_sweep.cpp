@@ -438,7 +438,7 @@ TEST_CASE("mistakes are named with their remedy before anything runs", "[sweep][
        "--set: \"materials.rock.poisson\" is varied"},
       {{"--vary", "materials.rock.poison=0.1,0.2"}, "did you mean \"poisson\""},
       {{"--vary", "bodies.brick.angle=1,2"}, "has no item of the name \"brick\""},
-      {{"--vary", "materials.rock.poisson=2,3"}, "set by \"materials.rock.poisson=2\""},
+      {{"--vary", "materials.rock.poisson=2,3"}, "set by materials.rock.poisson=2"},
       {{"--table", folder / "none.csv"}, "none.csv"},
       {{"--table", folder.write("bad.csv", "a,b\n1\n")}, "bad.csv:2: has 1 cells"},
       {{"--vary", vary, "--shard", "3"}, "--shard: \"3\" is no part; write I/N"},
