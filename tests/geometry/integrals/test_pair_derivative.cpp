@@ -93,9 +93,9 @@ TEST_CASE("derivatives of the integrals of a pair are those of their differences
                                               ? PotentialChoice::Field::roof
                                               : PotentialChoice::Field::distance};
     Pair pair(random_shape(random), random_shape(random), choice);
-    const std::array<double, 6> pose{random.uniform(-1, 1),      random.uniform(-1, 1),
-                                     random.uniform(0, 2 * kHalfTurn), random.uniform(-1, 1),
-                                     random.uniform(-1, 1),      random.uniform(0, 2 * kHalfTurn)};
+    const std::array<double, 6> pose{
+        random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2 * kHalfTurn),
+        random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2 * kHalfTurn)};
     pair.place(pose);
     const PairIntegral here = pair.integral();
     const std::span<const MovingIntegral> found = pair.derivative(false);
@@ -139,7 +139,8 @@ TEST_CASE("the sums over patches have the derivatives of the whole, which are sy
   for (int n = 0; n < test::scaled(1000); ++n) {
     Pair pair(samples::random_star_shaped(random, 9, .3),
               samples::random_star_shaped(random, 12, .3), {});
-    pair.place({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2 * kHalfTurn), 0, 0, 0});
+    pair.place(
+        {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2 * kHalfTurn), 0, 0, 0});
     if (!pair.integral().touching()) continue;
     const MovingIntegral whole = pair.derivative(false)[0];
     const std::span<const MovingIntegral> patches = pair.derivative(true);
