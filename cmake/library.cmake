@@ -14,6 +14,20 @@ function(apothem_library name)
   target_link_libraries(apothem_${name} PRIVATE $<BUILD_INTERFACE:apothem_options>)
 endfunction()
 
+# A library of another build folder of the same sources.
+function(imported_library name folder)
+  add_library(${name} STATIC IMPORTED GLOBAL)
+  set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${APOTHEM_OBJECTS_FROM}/${folder}/lib${name}.a)
+endfunction()
+
+# Links the libraries before all else, so that inline functions are theirs: with sanitizers, where what another build
+# folder gives has none.
+function(link_libraries_first target)
+  foreach(library apothem_geometry apothem_mechanics apothem_files)
+    target_link_libraries(${target} PRIVATE -Wl,--whole-archive $<TARGET_FILE:${library}> -Wl,--no-whole-archive)
+  endforeach()
+endfunction()
+
 # What the sources must know of the build: the version, and where shipped data are.
 set(APOTHEM_GENERATED ${PROJECT_BINARY_DIR}/generated)
 file(RELATIVE_PATH APOTHEM_DATA_FROM_PROGRAM

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
+#include <map>
 #include <utility>
 
 #include "lib/contact/law/stiffness.hpp"
@@ -134,17 +134,56 @@ double flat_bound(const LandingBounds& a, const LandingBounds& b, const PairLaw&
          std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness * (a.slide + b.slide);
 }
 
+// A number rounded to 32 bits: exponent and digits.
+std::pair<int, long long> rounded(double value) {
+  int exponent = 0;
+  const double digits = std::frexp(value, &exponent);
+  return {exponent, std::llround(std::ldexp(digits, 32))};
+}
+
+// What the stiffness of a body's contacts follows from, rounded.
+using LanderKind = std::vector<std::pair<int, long long>>;
+
+LanderKind kind_of(const RigidBody& body, int law, const Lander& lander) {
+  std::vector<LanderKind> landings;
+  for (const Landing& l : lander.landings) {
+    landings.push_back({rounded(l.length),
+                        rounded(l.breadth),
+                        rounded(std::abs(l.arm)),
+                        rounded(std::abs(l.height)),
+                        rounded(l.mobility),
+                        rounded(l.slide),
+                        {l.pieces, 0}});
+  }
+  std::ranges::sort(landings);
+  LanderKind kind{{law, body.can_move()}, rounded(body.potential.steepest)};
+  for (const double inverse : body.inverse_mass()) kind.push_back(rounded(inverse));
+  for (const LanderKind& landing : landings)
+    kind.insert(kind.end(), landing.begin(), landing.end());
+  return kind;
+}
+
+// Bodies that stand for all: two of each kind. A thousand equal boxes at other places differ by
+// round-off, and the stiffest of their pairs would be sought among all.
+std::vector<int> representatives(const Model& model, const PairTable& table,
+                                 const std::vector<Lander>& all) {
+  std::map<LanderKind, int> members;
+  std::vector<int> chosen;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+    if (++members[kind_of(model.bodies[i], table.kind(i), all[i])] <= 2) chosen.push_back(i);
+  }
+  return chosen;
+}
+
 struct FlatGroup {
   std::vector<int> members;
   LandingBounds bounds;
 };
 
 // Bodies of about the same size go together, so that the bounds of a group are sharp.
-std::vector<FlatGroup> groups_by_length(const std::vector<Lander>& all) {
-  std::vector<int> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
+std::vector<FlatGroup> groups_by_length(const std::vector<Lander>& all, std::vector<int> order) {
   std::ranges::stable_sort(order, std::greater(), [&](int i) { return all[i].bounds.longest; });
-  const auto size = static_cast<size_t>(std::sqrt(static_cast<double>(all.size()))) + 1;
+  const auto size = static_cast<size_t>(std::sqrt(static_cast<double>(order.size()))) + 1;
   std::vector<FlatGroup> groups;
   for (const int i : order) {
     if (groups.empty() || groups.back().members.size() == size) groups.emplace_back();
@@ -160,7 +199,8 @@ StepLimit contact_step_limit(const Model& model) {
   const PairTable table = pair_table(model);
   const std::vector<Lander> all =
       landers(model, table.softest(), table.stiffest_friction().stiffness_ratio);
-  const std::vector<FlatGroup> groups = groups_by_length(all);
+  const std::vector<int> chosen = representatives(model, table, all);
+  const std::vector<FlatGroup> groups = groups_by_length(all, chosen);
   const PairLaw stiffest{.normal_stiffness = table.stiffest(),
                          .friction = table.stiffest_friction()};
   const auto bound = [&](int i) {
@@ -172,8 +212,8 @@ StepLimit contact_step_limit(const Model& model) {
   };
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
   std::vector<std::pair<double, int>> order;
-  order.reserve(all.size());
-  for (int i = 0; i < static_cast<int>(all.size()); ++i) order.emplace_back(-bound(i), i);
+  order.reserve(chosen.size());
+  for (const int i : chosen) order.emplace_back(-bound(i), i);
   std::ranges::sort(order);
   double worst = 0;
   std::array<int, 2> pair{-1, -1};

@@ -109,14 +109,26 @@ struct Moves {
   double error = 0;
 };
 
+double largest_speed(const Simulation& simulation, size_t bodies) {
+  double speed = 0;
+  for (size_t i = 0; i < bodies; ++i) {
+    const auto rate = simulation.state().pose_rate(static_cast<RigidIndex>(i));
+    speed = std::max(speed, std::hypot(rate[0], rate[1]) + std::abs(rate[2]));
+  }
+  return speed;
+}
+
+// Long runs, whose numbers are printed, go on to their end; others until nothing has moved for a
+// second.
 Moves run(const Model& model, double end, bool settled) {
   Simulation simulation(model, {.end = end, .settled = settled}, 1, 1);
-  while (simulation.state().time < end) simulation.step();
-  Moves moves;
-  for (size_t i = 0; i < model.bodies.size(); ++i) {
-    const auto rate = simulation.state().pose_rate(static_cast<RigidIndex>(i));
-    moves.speed = std::max(moves.speed, std::hypot(rate[0], rate[1]) + std::abs(rate[2]));
+  double rest_since = 0;
+  while (simulation.state().time < std::min(end, long_run() ? end : rest_since + 1)) {
+    simulation.step();
+    if (largest_speed(simulation, model.bodies.size()) > 1e-6) rest_since = simulation.state().time;
   }
+  Moves moves;
+  moves.speed = largest_speed(simulation, model.bodies.size());
   const Energies e = simulation.energies();
   moves.error = std::abs(e.total_error) / (e.friction_loss + e.damping_loss);
   return moves;

@@ -169,6 +169,41 @@ TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]
   CHECK(std::abs(simulation.state().pose_rate(1)[1]) < 1e-3);
 }
 
+TEST_CASE("the stability limit is that of the stiffest pair, also among equal bodies",
+          "[dynamics]") {
+  test::SeededRandom random(57);
+  for (int i = 0; i < test::scaled(40); ++i) {
+    Model model = falling_model();
+    model.gravity = Vec2::Zero();
+    if (i % 2 == 0) model.contact.friction = {.4, 0, .7};
+    std::vector<RigidBody> bodies;
+    // Each shape several times, at places where its corners are rounded differently.
+    for (int shape = 0; shape < 3; ++shape) {
+      const Polygon one = samples::random_convex(random, random.integer(3, 7));
+      const int times = random.integer(1, 5);
+      for (int k = 0; k < times; ++k) {
+        const Vec2 place(random.uniform(-50, 50), random.uniform(-50, 50));
+        const Motion motion = random.integer(0, 3) > 0 ? Motion::free : Motion::fixed;
+        bodies.push_back(
+            make_body(model, std::to_string(bodies.size()), samples::shifted(one, place), motion));
+      }
+    }
+    double least = HUGE_VAL;
+    for (size_t a = 0; a < bodies.size(); ++a) {
+      for (size_t b = 0; b < a; ++b) {
+        model.bodies = {bodies[a], bodies[b]};
+        least = std::min(least, contact_step_limit(model).step);
+      }
+    }
+    model.bodies = bodies;
+    if (std::isinf(least)) {
+      CHECK(std::isinf(contact_step_limit(model).step));
+    } else {
+      CHECK(contact_step_limit(model).step == Approx(least).epsilon(1e-9));
+    }
+  }
+}
+
 TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
   Model model = falling_model(2e9);
   model.gravity = Vec2::Zero();

@@ -18,6 +18,8 @@ class PairTable {
   [[nodiscard]] const PairLaw& between(BodyIndex a, BodyIndex b) const {
     return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
   }
+  /// Bodies of one kind have the same law with every other body.
+  [[nodiscard]] int kind(BodyIndex body) const { return kind_[body]; }
   /// True if bodies with a mesh touch themselves as well.
   [[nodiscard]] bool self() const { return self_; }
   /// True if there is friction between any two bodies.
