@@ -8,7 +8,6 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/body_start.hpp
   dynamics/degrees_of_freedom.hpp
   dynamics/energy_guard.hpp
-  dynamics/forecast.hpp
   dynamics/ledger.hpp
   dynamics/population.hpp
   dynamics/quiet_motion.hpp
@@ -90,6 +89,7 @@ set(APOTHEM_PUBLIC_HEADERS
   mesh/select.hpp
   model/columns.hpp
   model/deformable.hpp
+  model/forecast.hpp
   model/frame_format.hpp
   model/history.hpp
   model/model.hpp

@@ -134,7 +134,21 @@ void say_output(const Scene& scene, bool empty_history, const OutputCost& cost) 
                         : "off; one is written when the run is stopped");
 }
 
+void say_chosen_stiffness(const Model& model) {
+  if (!model.contact.penetration) return;
+  const double share = *model.contact.penetration;
+  const NeededStiffness needed = stiffness_for(model, share);
+  std::string text = fmt::format(
+      "k_n = {:g} Pa, with which no penetration should exceed {:g} % of the smallest inradius",
+      model.contact.normal_stiffness, 100 * share);
+  if (needed.flat > 0 && needed.flat < needed.corner) {
+    text += fmt::format("; {:g} Pa would do if no body landed on a corner", needed.flat);
+  }
+  say("stiffness", text);
+}
+
 void say_contact_at_start(const Simulation& simulation) {
+  say_chosen_stiffness(simulation.model());
   const std::string overlaps = describe_overlaps(simulation);
   say("at t = 0", fmt::format("{} contacts", simulation.counts().touching_now));
   if (!overlaps.empty()) say("overlaps", overlaps);

@@ -216,6 +216,7 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
   } else {
     json["time_step"] = time_step(scene, simulation);
   }
+  if (model.contact.penetration) json["normal_stiffness"] = model.contact.normal_stiffness;
   json["contacts_at_start"] = simulation.counts().touching_now;
   json["terms"] = terms;
   json["output"] = output(scene.output, cost);

@@ -115,8 +115,10 @@ void print_summary(const Run& run) {
         changes.shortened, first.time, scene.model.name_of(first.body), changes.lengthened,
         changes.shortest);
   }
-  fmt::print("largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N{}\n",
+  const ContactLaw& law = scene.model.contact;
+  fmt::print("largest penetration {:.9g} m ({:.3g} % of an inradius{}), contact force {:.9g} N{}\n",
              extremes.penetration.value, 100 * extremes.relative_penetration.value,
+             law.penetration ? fmt::format(" with k_n = {:g} Pa", law.normal_stiffness) : "",
              extremes.force.value, error_of(run));
   if (!run.load_steps().empty()) {
     const LoadStep& last = run.load_steps().back();

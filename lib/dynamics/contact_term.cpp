@@ -14,6 +14,10 @@
 namespace apothem {
 namespace {
 
+std::string too_soft(const ContactLaw& law) {
+  return fmt::format("the contact is too soft for this load; {}", stiffening(law));
+}
+
 constexpr double kPolygonSkin = 0.1;  // of the size of a rigid body
 constexpr double kMeshSkin = 0.25;    // of the shortest reference length
 // Of the smaller inradius of two bodies. The middle of a body, an inradius from its boundary,
@@ -326,8 +330,7 @@ void ContactTerm::refuse_passage(const State& state) {
         "pass "
         "through each other: {}",
         name(a), name(b), at_time(state),
-        state.step == 0 ? "move them apart"
-                        : "the contact is too soft for this load; raise contact.normal_stiffness"));
+        state.step == 0 ? "move them apart" : too_soft(model_.contact)));
   }
 }
 
@@ -337,7 +340,7 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   const std::string& a = name(fault.a);
   const std::string& b = name(fault.b);
   std::string what = fmt::format("bodies \"{}\" and \"{}\" overlap ", a, b);
-  std::string advice = "the contact is too soft for this load; raise contact.normal_stiffness";
+  std::string advice = too_soft(model_.contact);
   switch (fault.kind) {
     case Kind::singular_area:
       what += "up to the singular area of one of them (phi = 1)";

@@ -54,6 +54,7 @@ class Equilibrium {
   [[nodiscard]] const std::vector<double>& forces() const { return rest_; }
   /// Of Newton's method in all steps so far.
   [[nodiscard]] std::int64_t iterations() const { return iterations_; }
+  [[nodiscard]] const Model& model() const { return model_; }
   /// How exactly coordinates are known.
   [[nodiscard]] const Lengths& lengths() const { return lengths_; }
   /// The loads of the last evaluation have been there before the first load step.

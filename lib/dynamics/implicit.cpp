@@ -127,8 +127,9 @@ void ImplicitSteps::refuse() const {
       "Newton's method finds no places at the end of a step of {:.3g} s {}: {}", h_,
       at_time(before_),
       fixed_ ? "give a smaller time.step or \"auto\""
-             : "bodies may be about to pass through each other; raise contact.normal_stiffness, or "
-               "take the scheme \"verlet\""));
+             : fmt::format("bodies may be about to pass through each other; {}, or take the scheme "
+                           "\"verlet\"",
+                           stiffening(equilibrium_.model().contact))));
 }
 
 // Goes on with velocity Verlet, the longer the shorter this phase was.

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "lib/dynamics/energy_guard.hpp"
-#include "lib/dynamics/forecast.hpp"
 #include "lib/dynamics/population.hpp"
 #include "lib/dynamics/results.hpp"
 #include "lib/dynamics/step_control.hpp"
 #include "lib/dynamics/term.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/stopwatch.hpp"
+#include "lib/model/forecast.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
 #include "lib/model/state.hpp"

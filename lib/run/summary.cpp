@@ -204,6 +204,8 @@ std::string summary_text(const Run& run) {
                         {"iterations", implicit->iterations},
                         {"numerical_loss", simulation.energies().numerical_loss}};
   }
+  const ContactLaw& law = scene.model.contact;
+  if (law.penetration) json["normal_stiffness"] = law.normal_stiffness;
   if (const std::optional<double> share = run.quiet_share()) json["at_rest"] = *share;
   if (!run.beginning().folder.empty()) json["from"] = beginning(run);
   add_peaks(json, run);

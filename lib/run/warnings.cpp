@@ -23,10 +23,11 @@ void warn_of_penetration(const Model& model, const Peak& deepest,
   }
   warnings.push_back(fmt::format(
       "\"{}\" and \"{}\" were {:.3g} m deep in each other at t = {:.6g} s, {:.3g} % of the "
-      "inradius of \"{}\" ({:.3g} m) and more than contact.penetration_warning ({:.3g} %): raise "
-      "contact.normal_stiffness",
+      "inradius of \"{}\" ({:.3g} m) and more than contact.{} ({:.3g} %): {}",
       model.name_of(deepest.a), model.name_of(deepest.b), deepest.value * inradius, deepest.time,
-      100 * deepest.value, model.name_of(smaller), inradius, 100 * limit));
+      100 * deepest.value, model.name_of(smaller), inradius,
+      limit == model.contact.penetration ? "penetration" : "penetration_warning", 100 * limit,
+      stiffening(model.contact)));
 }
 
 // What lasted has ended the run. What a contact has made and taken back is no energy of the run,

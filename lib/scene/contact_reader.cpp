@@ -35,8 +35,7 @@ class ContactReader {
     JsonObject object(in_, value);
     ContactLaw& law = model_.contact;
     if (const JsonValue* v = object.optional("potential")) potential(*v);
-    law.normal_stiffness =
-        in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
+    stiffness(value, object);
     if (const JsonValue* v = object.optional("field")) field(*v);
     if (const JsonValue* v = object.optional("reference")) reference(*v);
     if (const JsonValue* v = object.optional("friction")) {
@@ -46,6 +45,7 @@ class ContactReader {
     if (const JsonValue* v = object.optional("rigid"); v && in_.boolean(*v)) {
       features_.add(Feature::rigid_limit, v);
     }
+    law.penetration_warning = law.penetration.value_or(law.penetration_warning);
     object.read("penetration_warning", law.penetration_warning, &JsonReader::positive, "");
     object.optional("pairs");  // read by read_rules()
     const JsonValue* surface_value = object.optional("surface");
@@ -90,6 +90,32 @@ class ContactReader {
   }
 
  private:
+  // k_n, or the penetration from which it follows when all bodies are known.
+  void stiffness(const JsonValue& value, JsonObject& object) {
+    ContactLaw& law = model_.contact;
+    const JsonValue* const given =
+        value.find("penetration")
+            ? object.optional("normal_stiffness")
+            : &object.required(
+                  "normal_stiffness",
+                  "k_n in Pa (there is no default), or \"penetration\", from which it follows");
+    const JsonValue* const wish = object.optional("penetration");
+    if (given && wish) {
+      in_.fail(*wish, "cannot stand beside \"normal_stiffness\": give one of the two");
+    }
+    if (given) {
+      law.normal_stiffness = in_.positive(*given, "Pa");
+      return;
+    }
+    law.penetration = in_.positive(*wish, "");
+    if (!(*law.penetration < 1)) {
+      in_.fail(*wish,
+               "must be below 1: it is the share of the smallest inradius that bodies may "
+               "press into each other, such as 0.01");
+    }
+    features_.add(Feature::contact_penetration, wish);
+  }
+
   void potential(const JsonValue& value) {
     model_.contact.potential.kind = chosen(in_, value, kPotentials).kind;
     if (model_.contact.potential.kind == PotentialChoice::Kind::area) {

@@ -84,7 +84,7 @@ class Inspection {
       if (young == nullptr) continue;
       const double ratio = stiffness / young->number();
       if (ratio >= kSoftest && ratio <= kStiffest) continue;
-      say(*law->find("normal_stiffness"),
+      say(*law->find(scene_.model.contact.penetration ? "penetration" : "normal_stiffness"),
           fmt::format("{:g} Pa is {:.2g} times Young's modulus of {:g} Pa at {}: contacts that are "
                       "{}; between 0.1 and 10 times is usual",
                       stiffness, ratio, young->number(), young->pointer(),

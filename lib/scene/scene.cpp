@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "lib/model/forecast.hpp"
 #include "lib/scene/body_reader.hpp"
 #include "lib/scene/compatibility.hpp"
 #include "lib/scene/contact_reader.hpp"
@@ -42,7 +43,9 @@ class SceneReader {
     if (contact) {
       read_contact(in_, *contact, model_, features_);
     } else if (fills || (list && list->items().size() > 1)) {
-      top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
+      top.required("contact",
+                   "{\"penetration\": 0.01} or {\"normal_stiffness\": ...} for scenes of more than "
+                   "one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
     if (list) bodies.add(list->items());
@@ -64,6 +67,7 @@ class SceneReader {
     const JsonValue* measure = top.optional("measure");
     top.finish();
     results(bodies.names(), output, expect, measure);
+    if (model_.contact.penetration) choose_stiffness(*contact->find("penetration"));
   }
 
  private:
@@ -195,6 +199,17 @@ class SceneReader {
     if (scene_.time.automatic_load_steps) reader.know({kCollapseFactor, "1"});
     if (expect) scene_.expectations = reader.expectations(*expect, scene_.time.end);
     if (measure) scene_.measures = reader.measures(*measure, scene_.time.end, stop_names());
+  }
+
+  // k_n from the penetration that the scene allows.
+  void choose_stiffness(const JsonValue& penetration) {
+    const NeededStiffness needed = stiffness_for(model_, *model_.contact.penetration);
+    model_.contact.normal_stiffness = std::max(needed.flat, needed.corner);
+    if (model_.contact.normal_stiffness > 0) return;
+    in_.fail(
+        penetration,
+        "gives no stiffness, because at the start no free body has a weight, a speed or a fast "
+        "partner; give \"normal_stiffness\" in Pa");
   }
 
   // What can end a run before its time.

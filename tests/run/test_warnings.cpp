@@ -1,8 +1,10 @@
 // What a run says at its end about its own results.
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "lib/run/hash.hpp"
 #include "lib/run/warnings.hpp"
 #include "tests/folder.hpp"
 #include "tests/run/scenes.hpp"
@@ -11,6 +13,18 @@ using namespace apothem;
 using namespace apothem::test;
 
 namespace {
+
+// A block that slides off a shelf, and falls farther than the scene at its start tells.
+std::string sliding_block(const std::string& contact) {
+  return R"({ "gravity": [0, -10], "materials": { "rock": { "density": 2000 } },
+    "contact": { )" +
+         contact + R"( },
+    "bodies": [
+      { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-2, -1], [9, -1], [9, 0], [-2, 0]] },
+      { "name": "shelf", "material": "rock", "motion": "fixed", "polygon": [[-2, 3], [0, 3], [0, 4], [-2, 4]] },
+      { "name": "block", "material": "rock", "velocity": [0.7, 0], "polygon": [[-0.6, 4], [0.4, 4], [0.4, 5], [-0.6, 5]] } ],
+    "time": { "end": 1.6 }, "output": { "frames": 2 } })";
+}
 
 // A block of 1 m x 1 m falls flat on a floor of 4 m x 1 m: both have an inradius of 0.5 m.
 std::string falling_block(double stiffness, const std::string& more = "") {
@@ -92,4 +106,46 @@ TEST_CASE("others add warnings of their own to a run", "[run][warnings]") {
   CHECK(run.run() == Run::Status::done);
   CHECK(summary(folder / "out")["warnings"] ==
         nlohmann::json::array({"the moon is full: wait for a day"}));
+}
+
+TEST_CASE("the stiffness may follow from a penetration, and a deeper one is said",
+          "[run][warnings]") {
+  const Folder folder;
+  Run run(scene_of(folder, sliding_block(R"("penetration": 0.02)")), {.folder = folder / "out"});
+  CHECK(run.run() == Run::Status::done);
+  const double stiffness = run.scene().model.contact.normal_stiffness;
+  CHECK(stiffness > 0);
+  CHECK(summary(folder / "out")["normal_stiffness"] == stiffness);
+  CHECK(run.simulation().extremes().relative_penetration.value > .02);
+  REQUIRE(run.warnings().size() == 1);
+  CHECK_THAT(run.warnings()[0], Catch::Contains("more than contact.penetration (2 %)"));
+  CHECK_THAT(run.warnings()[0], Catch::Contains("lower contact.penetration"));
+
+  // The same scene with the stiffness itself has the same bits.
+  Run same(scene_of(folder, sliding_block(fmt::format("\"normal_stiffness\": {}", stiffness))),
+           {.folder = folder / "same"});
+  CHECK(same.run() == Run::Status::done);
+  CHECK(state_hash(same.state()) == state_hash(run.state()));
+}
+
+TEST_CASE("a penetration that gives no stiffness is an error", "[run][warnings]") {
+  const Folder folder;
+  const auto message = [&](const std::string& contact, bool still = false) {
+    std::string text = sliding_block(contact);
+    if (still) text.replace(text.find("-10"), 3, "0"), text.replace(text.find("0.7"), 3, "0");
+    try {
+      scene_of(folder, text);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(message(R"("penetration": 0.01, "normal_stiffness": 1e9)"),
+             Catch::Contains("/contact/penetration: cannot stand beside \"normal_stiffness\""));
+  CHECK_THAT(message(R"("penetration": 1)"),
+             Catch::Contains("/contact/penetration: must be below 1"));
+  CHECK_THAT(message(R"("penetration": 0)"), Catch::Contains("/contact/penetration"));
+  CHECK_THAT(message(R"("penetration": 0.01)", true),
+             Catch::Contains("/contact/penetration: gives no stiffness"));
+  CHECK_THAT(message(""), Catch::Contains("normal_stiffness"));
 }

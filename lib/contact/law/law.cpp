@@ -9,6 +9,10 @@ bool matches(const ContactRule::Party& party, int body, int material) {
 
 }  // namespace
 
+std::string_view stiffening(const ContactLaw& law) {
+  return law.penetration ? "lower contact.penetration" : "raise contact.normal_stiffness";
+}
+
 PairLaw law_between(const ContactLaw& law, int a, int material_a, int b, int material_b) {
   PairLaw result{law.normal_stiffness, law.friction, law.damping};
   for (const ContactRule& rule : law.rules) {  // later rules win

@@ -81,6 +81,9 @@ struct ContactRule {
 struct ContactLaw {
   PotentialChoice potential;
   double normal_stiffness = 0;  ///< k_n, Pa; there is no default, the scene must say it
+  /// The penetration over the smallest inradius of the scene that k_n follows from, if the scene
+  /// gives this in place of k_n.
+  std::optional<double> penetration = {};
   Friction friction = {};
   FrictionLaw friction_law = FrictionLaw::resultant;
   ContactSurface surface = ContactSurface::body;
@@ -93,6 +96,9 @@ struct ContactLaw {
   /// The run warns if the penetration over the inradius of a body exceeds this value.
   double penetration_warning = 0.01;
 };
+
+/// What makes contacts stiffer, as advice to the user: the key that the scene has.
+std::string_view stiffening(const ContactLaw& law);
 
 /// The law between two bodies, given with their materials. Each part of it comes from the last rule
 /// that applies, or else from the law of the scene.

@@ -1,11 +1,13 @@
-#include "lib/dynamics/forecast.hpp"
+#include "lib/model/forecast.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
+#include "lib/mesh/boundary.hpp"
 #include "lib/mesh/measure.hpp"
 #include "lib/model/inradius.hpp"
 #include "lib/model/pairs.hpp"
@@ -13,12 +15,15 @@
 namespace apothem {
 namespace {
 
+// A weight that acts at once presses twice as deep as it rests.
+constexpr double kSudden = 2;
+
 // A body as the formulas see it.
 struct Block {
   double mass, density;
   double breadth;                // of the side on which it lands, m
   double wave = HUGE_VAL;        // pressure of its strongest elastic wave per speed, Pa s/m
-  double tangent = HUGE_VAL;     // of half the sharpest angle; infinite if not known
+  double tangent = HUGE_VAL;     // of half the sharpest angle
   double speed;                  // of its fastest point, without a fall, m/s
   Vec2 velocity = Vec2::Zero();  // of its mass centre
   bool free;
@@ -35,6 +40,13 @@ double mean_density(const Model& model, const DeformableBody& body, double area)
   return mass / area;
 }
 
+// Of half the angle of a corner between the ways to the vertices after and before it; infinite
+// where it is no corner.
+double half_tangent(const Vec2& next, const Vec2& last) {
+  const double sine = cross(next, last), whole = next.norm() * last.norm();
+  return sine > 0 ? sine / (whole + next.dot(last)) : HUGE_VAL;
+}
+
 class Blocks {
  public:
   explicit Blocks(const Model& model) : model_(model), g_(model.strongest_gravity()) {
@@ -46,40 +58,73 @@ class Blocks {
 
   Forecast forecast(std::span<const double> slopes) const {
     Forecast result;
-    double top = HUGE_VAL, bottom = -HUGE_VAL;
-    for (const Block& b : blocks_) {
-      if (b.free) top = std::min(top, b.top), bottom = std::max(bottom, b.bottom);
-    }
-    const double softest = pair_table(model_).softest();
-    std::array<double, 2> flattest{HUGE_VAL, HUGE_VAL};  // the two smallest slopes
-    for (const double slope : slopes) {
-      if (slope < flattest[1]) flattest[1] = std::max(slope, flattest[0]);
-      flattest[0] = std::min(slope, flattest[0]);
-    }
+    const double k = pair_table(model_).softest();
     const auto note = [&](double depth, double corner, BodyIndex body, ExpectedDepth& worst) {
       if (!(depth > 0)) return;
       const double share = std::max(depth, corner) / inradius_of(model_, body);
       if (share > worst.share) worst = {depth, corner, share, body};
     };
+    for_each_press(slopes, [&](BodyIndex i, const Block& b, const Press& p) {
+      note(p.weight / (k * p.slopes), 0, i, result.by_weight);
+      result.last_landing = std::max(result.last_landing, p.landing);
+      note(std::min(std::sqrt(2 * p.energy / (k * p.slopes * b.breadth)),
+                    b.wave * p.speed / (k * p.slopes)),
+           cube_root(3 * p.energy / (b.tangent * k * p.at_corner)), i, result.by_speed);
+    });
+    return result;
+  }
+
+  // The formulas of forecast(), solved for k_n. What falls goes on falling while it is stopped.
+  NeededStiffness stiffness_for(std::span<const double> slopes, double depth) const {
+    NeededStiffness k;
+    for_each_press(slopes, [&](BodyIndex, const Block& b, const Press& p) {
+      const double energy = p.energy > 0 ? p.energy + b.mass / model_.thickness * g_ * depth : 0;
+      const double flat = std::min(2 * energy / (p.slopes * b.breadth * depth * depth),
+                                   b.wave * p.speed / (p.slopes * depth));
+      k.flat = std::max({k.flat, kSudden * p.weight / (p.slopes * depth), flat});
+      k.corner = std::max(k.corner, 3 * energy / (b.tangent * p.at_corner * depth * depth * depth));
+    });
+    return k;
+  }
+
+ private:
+  // What presses a free body into other ones.
+  struct Press {
+    double slopes, at_corner;  // of the body and of its flattest partner, flat and at a corner, 1/m
+    double weight;             // of a pile as high as all free bodies, Pa
+    double speed;              // of an impact, m/s
+    double energy;             // of an impact, over the thickness, J/m
+    double landing;            // after a free fall, s
+  };
+
+  template <class Visit>
+  void for_each_press(std::span<const double> slopes, const Visit& visit) const {
+    double top = HUGE_VAL, bottom = -HUGE_VAL;
+    for (const Block& b : blocks_) {
+      if (b.free) top = std::min(top, b.top), bottom = std::max(bottom, b.bottom);
+    }
+    std::array<double, 2> flattest{HUGE_VAL, HUGE_VAL};  // the two smallest slopes
+    for (const double slope : slopes) {
+      if (slope < flattest[1]) flattest[1] = std::max(slope, flattest[0]);
+      flattest[0] = std::min(slope, flattest[0]);
+    }
     for (BodyIndex i = 0; i < static_cast<BodyIndex>(blocks_.size()); ++i) {
       const Block& b = blocks_[i];
       if (!b.free) continue;
       const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
-      const double stiffness = softest * (slopes[i] + partner);  // Pa/m
       const double sine = std::isfinite(b.tangent) ? b.tangent / hypotenuse(1, b.tangent) : 1;
-      const double at_corner = softest * (partner + sine * slopes[i]);
-      note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
       const double height = fall(b);
-      result.last_landing = std::max(result.last_landing, fall_time(b, height));
       const double v = hypotenuse(b.speed, std::sqrt(2 * g_ * height)) + fastest_;
-      const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
-      note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
-           cube_root(3 * energy / (b.tangent * at_corner)), i, result.by_speed);
+      visit(i, b,
+            Press{.slopes = slopes[i] + partner,
+                  .at_corner = partner + sine * slopes[i],
+                  .weight = b.density * g_ * (bottom - top),
+                  .speed = v,
+                  .energy = b.mass / model_.thickness * v * v / 2,
+                  .landing = fall_time(b, height)});
     }
-    return result;
   }
 
- private:
   void add(const RigidBody& body) {
     Block b{.mass = body.mass,
             .density = model_.materials[body.material].density,
@@ -97,8 +142,7 @@ class Blocks {
       const Vec2 next = v[body.potential.next(vertex)] - v[i];
       const Vec2 last = v[body.potential.previous(vertex)] - v[i];
       b.breadth = std::max(b.breadth, next.norm());
-      const double sine = cross(next, last), whole = next.norm() * last.norm();
-      if (sine > 0) b.tangent = std::min(b.tangent, sine / (whole + next.dot(last)));
+      b.tangent = std::min(b.tangent, half_tangent(next, last));
       points.emplace_back(body.position.x() + c * v[i].x() - s * v[i].y(),
                           body.position.y() + s * v[i].x() + c * v[i].y());
     }
@@ -128,6 +172,13 @@ class Blocks {
             .speed = body.velocity.norm(),
             .velocity = body.velocity,
             .free = body.supports.empty()};
+    for (const BoundaryLoop& loop : boundary(body.mesh).loops) {
+      const std::vector<Vec2> ring = body.mesh.places(loop.nodes);
+      for (size_t i = 0; i < ring.size(); ++i) {
+        b.tangent =
+            std::min(b.tangent, half_tangent(after(ring, i) - ring[i], before(ring, i) - ring[i]));
+      }
+    }
     double radius = 0;
     for (const Vec2& x : body.mesh.nodes) {
       radius = std::max(radius, (x - body.mesh.nodes[0]).norm());
@@ -210,7 +261,37 @@ class Blocks {
   std::vector<std::vector<size_t>> strips_;
 };
 
+// The slope of the potential of each body, rigid ones first, 1/m.
+std::vector<double> steepest_slopes(const Model& model) {
+  std::vector<double> slopes;
+  for (const RigidBody& body : model.bodies) slopes.push_back(body.potential.steepest);
+  const PotentialChoice& choice = model.contact.potential;
+  for (const DeformableBody& body : model.deformables) {
+    const bool given = choice.reference == PotentialChoice::Reference::length;
+    slopes.push_back(1 /
+                     (given ? choice.length : boundary_inradius(body.mesh, boundary(body.mesh))));
+  }
+  return slopes;
+}
+
+// The next number of two digits; 0 for what is no positive number.
+double rounded_up(double value) {
+  if (!(value > 0) || !std::isfinite(value)) return 0;
+  double unit = 1;
+  while (unit * 100 <= value) unit *= 10;
+  while (unit * 10 > value) unit /= 10;
+  return std::ceil(value / unit) * unit;
+}
+
 }  // namespace
+
+NeededStiffness stiffness_for(const Model& model, double share) {
+  double inradius = HUGE_VAL;
+  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
+  for (BodyIndex i = 0; i < bodies; ++i) inradius = std::min(inradius, inradius_of(model, i));
+  const NeededStiffness k = Blocks(model).stiffness_for(steepest_slopes(model), share * inradius);
+  return {rounded_up(k.flat), rounded_up(k.corner)};
+}
 
 Forecast forecast(const Model& model, std::span<const double> slopes) {
   return Blocks(model).forecast(slopes);

@@ -11,7 +11,7 @@ namespace apothem {
 /// A depth of contact and the body with the largest share of its inradius.
 struct ExpectedDepth {
   double depth = 0;   ///< flat on the other body, m
-  double corner = 0;  ///< by the body's sharpest corner, m; 0 if not known
+  double corner = 0;  ///< by the body's sharpest corner, m; 0 if it has none
   double share = 0;   ///< the larger of the two, of the body's inradius
   BodyIndex body = -1;
 };
@@ -23,8 +23,9 @@ struct Forecast {
   /// Under the weight of a pile as high as all free bodies together: p = density g height.
   ExpectedDepth by_weight;
   /// Of the first impact on something fixed, at the speeds of the start and after the free fall
-  /// onto what lies below: the energy of contact is m v^2 / 2. A body with a mesh presses with no
-  /// more than the pressure of its elastic wave, density c v.
+  /// onto what lies below: the energy of contact is m v^2 / 2. Flat on another
+  /// one, a body with a mesh presses with no more than the pressure of its elastic wave, density c
+  /// v.
   ExpectedDepth by_speed;
   /// When the last body has fallen freely onto what lies below it, from its speed at the start, s;
   /// 0 if none falls.
@@ -33,5 +34,17 @@ struct Forecast {
 
 /// `slopes`: 1/r of the potential of each body, rigid ones first, 1/m.
 Forecast forecast(const Model& model, std::span<const double> slopes);
+
+/// Normal stiffnesses k_n, Pa; 0 where no free body has a weight or a speed.
+struct NeededStiffness {
+  double flat = 0;    ///< for the weight of the pile, and for first impacts that are flat
+  double corner = 0;  ///< for first impacts by the sharpest corner
+};
+
+/// The smallest normal stiffnesses, rounded up to two digits, with which no body presses deeper
+/// into another one than `share` of the smallest inradius of all bodies, by the formulas of
+/// Forecast; a pile that is not pressed at first sinks twice as deep as it rests. Meshes count with
+/// the surface of a body, and rules for pairs not at all.
+NeededStiffness stiffness_for(const Model& model, double share);
 
 }  // namespace apothem
