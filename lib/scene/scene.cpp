@@ -67,7 +67,7 @@ class SceneReader {
     const JsonValue* measure = top.optional("measure");
     top.finish();
     results(bodies.names(), output, expect, measure);
-    if (model_.contact.penetration) choose_stiffness(*contact->find("penetration"));
+    if (contact && model_.contact.penetration) choose_stiffness(*contact->find("penetration"));
   }
 
  private:
