@@ -43,8 +43,12 @@ double mean_density(const Model& model, const DeformableBody& body, double area)
 // Of half the angle of a corner between the ways to the vertices after and before it; infinite
 // where it is no corner.
 double half_tangent(const Vec2& next, const Vec2& last) {
-  const double sine = cross(next, last), whole = next.norm() * last.norm();
-  return sine > 0 ? sine / (whole + next.dot(last)) : HUGE_VAL;
+  const double sine = cross(next, last), cosine = next.dot(last);
+  const double whole = next.norm() * last.norm();
+  if (!(sine > 0)) return HUGE_VAL;
+  // Of the two forms, the one that round-off does not reach: in the middle of a straight side the
+  // sum is nothing else.
+  return cosine < 0 ? (whole - cosine) / sine : sine / (whole + cosine);
 }
 
 class Blocks {
@@ -97,30 +101,54 @@ class Blocks {
     double landing;            // after a free fall, s
   };
 
+  // The two smallest of some values.
+  struct TwoSmallest {
+    std::array<double, 2> values{HUGE_VAL, HUGE_VAL};
+    void add(double value) {
+      if (value < values[1]) values[1] = std::max(value, values[0]);
+      values[0] = std::min(value, values[0]);
+    }
+    // The smallest one beside `own`, which is among them.
+    [[nodiscard]] double beside(double own) const {
+      return own > values[0] ? values[0] : values[1];
+    }
+  };
+
+  // Of a body at a speed, over the thickness, J/m.
+  [[nodiscard]] double kinetic(const Block& b, double speed) const {
+    return b.mass / model_.thickness * speed * speed / 2;
+  }
+
   template <class Visit>
   void for_each_press(std::span<const double> slopes, const Visit& visit) const {
     double top = HUGE_VAL, bottom = -HUGE_VAL;
     for (const Block& b : blocks_) {
       if (b.free) top = std::min(top, b.top), bottom = std::max(bottom, b.bottom);
     }
-    std::array<double, 2> flattest{HUGE_VAL, HUGE_VAL};  // the two smallest slopes
-    for (const double slope : slopes) {
-      if (slope < flattest[1]) flattest[1] = std::max(slope, flattest[0]);
-      flattest[0] = std::min(slope, flattest[0]);
+    TwoSmallest flattest;
+    for (const double slope : slopes) flattest.add(slope);
+    TwoSmallest fastest, strongest;  // of free bodies: their negative speeds and energies, J/m
+    for (const Block& b : blocks_) {
+      if (b.free) fastest.add(-b.speed), strongest.add(-kinetic(b, b.speed));
     }
     for (BodyIndex i = 0; i < static_cast<BodyIndex>(blocks_.size()); ++i) {
       const Block& b = blocks_[i];
       if (!b.free) continue;
-      const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
+      const double partner = flattest.beside(slopes[i]);
       const double sine = std::isfinite(b.tangent) ? b.tangent / hypotenuse(1, b.tangent) : 1;
       const double height = fall(b);
       const double v = hypotenuse(b.speed, std::sqrt(2 * g_ * height)) + fastest_;
+      // Two free bodies that meet have no more energy than both, and none is worse than a heavy
+      // one.
+      const double own = kinetic(b, b.speed);
+      const double met = b.speed + std::max(0., -fastest.beside(-b.speed));
+      const double meeting = std::min(kinetic(b, met), own + std::max(0., -strongest.beside(-own)));
       visit(i, b,
             Press{.slopes = slopes[i] + partner,
                   .at_corner = partner + sine * slopes[i],
                   .weight = b.density * g_ * (bottom - top),
-                  .speed = v,
-                  .energy = b.mass / model_.thickness * v * v / 2,
+                  .speed = std::max(v, met),
+                  .energy = std::max(kinetic(b, v), meeting),
                   .landing = fall_time(b, height)});
     }
   }

@@ -23,9 +23,9 @@ struct Forecast {
   /// Under the weight of a pile as high as all free bodies together: p = density g height.
   ExpectedDepth by_weight;
   /// Of the first impact on something fixed, at the speeds of the start and after the free fall
-  /// onto what lies below: the energy of contact is m v^2 / 2. Flat on another
-  /// one, a body with a mesh presses with no more than the pressure of its elastic wave, density c
-  /// v.
+  /// onto what lies below: the energy of contact is m v^2 / 2. Of two free bodies that meet it is
+  /// at most that of both. Flat on another one, a body with a mesh presses with about the pressure
+  /// of its elastic wave, density c v.
   ExpectedDepth by_speed;
   /// When the last body has fallen freely onto what lies below it, from its speed at the start, s;
   /// 0 if none falls.

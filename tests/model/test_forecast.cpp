@@ -136,6 +136,30 @@ TEST_CASE("the stiffness for a penetration carries the weight of a pile", "[fore
   CHECK(deepest(model, .2) >= .8 * .01 * .5);
 }
 
+TEST_CASE("the stiffness for a penetration holds where two free bodies meet", "[forecast]") {
+  test::SeededRandom random(453);
+  for (int i = 0; i < test::scaled(24); ++i) {
+    const double share = std::pow(10, random.uniform(-3, -1.5));
+    const double a = random.uniform(.3, 2), b = i % 2 == 0 ? a : random.uniform(.3, 2);
+    Model model = on_floor(samples::block(.001, -b / 2, .001 + b, b / 2), 0);
+    set_shape(model.bodies[0], samples::block(-a, -a / 2, 0, a / 2), model);
+    model.bodies[0].motion = Motion::free;
+    model.gravity = Vec2::Zero();
+    const double speed = random.uniform(.2, 3);
+    model.bodies[0].velocity = {speed, 0};
+    model.bodies[1].velocity = {i % 2 == 0 ? -speed : random.uniform(-3, 0), 0};
+    INFO("share " << share << ", sides " << a << ", " << b);
+    model = stiffened(model, share, &NeededStiffness::flat);
+    Simulation simulation(model, {.end = .1}, 1, 1);
+    while (simulation.state().time < .1) simulation.step();
+    const double depth =
+        simulation.extremes().penetration.value / (share * smallest_inradius(model));
+    CHECK(depth > 0);
+    CHECK(depth <= 1.05);
+    if (i % 2 == 0) CHECK(depth >= .85);
+  }
+}
+
 TEST_CASE("no stiffness follows where nothing moves or presses", "[forecast]") {
   Model model = on_floor(samples::block(-.5, 0, .5, 1), 0);
   model.gravity = Vec2::Zero();
@@ -164,11 +188,13 @@ TEST_CASE("the stiffness for a penetration holds for meshes: flat, on a corner, 
     model.deformables = {body};
     const double share = random.uniform(.01, .1);
     const NeededStiffness needed = stiffness_for(model, share);
-    model.contact.normal_stiffness = std::max(needed.flat, needed.corner);
+    const bool flat = i % 3 == 0;
+    model.contact.normal_stiffness = flat ? needed.flat : std::max(needed.flat, needed.corner);
     const Forecast expected = Simulation(model, {.end = 1}, 1, 1).forecast();
     INFO(i << ": share " << share << ", k_n " << needed.flat << ", " << needed.corner);
     const double smallest = std::min(inradius_of(model, 0), inradius_of(model, 1));
-    const double depth = std::max(expected.by_speed.depth, expected.by_speed.corner);
+    const double depth = flat ? std::max(expected.by_speed.depth, 2 * expected.by_weight.depth)
+                              : std::max(expected.by_speed.depth, expected.by_speed.corner);
     CHECK(depth <= share * smallest * (1 + 1e-9));
     CHECK(depth >= .8 * share * smallest);
     Simulation simulation(model, {.end = .3}, 1, 1);
@@ -178,8 +204,8 @@ TEST_CASE("the stiffness for a penetration holds for meshes: flat, on a corner, 
     most = std::max(most, simulation.extremes().penetration.value / (share * smallest));
   }
   INFO("flat " << worst[0] << ", on a corner " << worst[1] << ", round " << worst[2]);
-  CHECK(worst[0] <= 1.05);
-  // The formula takes bodies as rigid; elements at a corner are squeezed aside.
-  CHECK(worst[1] <= 2);
+  // The elements at the surface are stopped by more than the pressure of the wave.
+  CHECK(worst[0] <= 1.3);
+  CHECK(worst[1] <= 1.05);
   CHECK(worst[2] <= 1.05);
 }
