@@ -5,6 +5,7 @@
 
 #include "lib/dynamics/simulation.hpp"
 #include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
 #include "lib/model/inradius.hpp"
 #include "tests/dynamics/mesh_models.hpp"
 
@@ -13,8 +14,9 @@ using namespace apothem::test;
 
 namespace {
 
-Model on_floor(const Polygon& polygon, double gap) {
+Model on_floor(const Polygon& polygon, double gap, const PotentialChoice& potential = {}) {
   Model model;
+  model.contact.potential = potential;
   model.gravity = {0, -9.81};
   model.materials = {rock()};
   model.contact.normal_stiffness = 1e9;
@@ -157,6 +159,42 @@ TEST_CASE("the stiffness for a penetration holds where two free bodies meet", "[
     CHECK(depth > 0);
     CHECK(depth <= 1.05);
     if (i % 2 == 0) CHECK(depth >= .85);
+  }
+}
+
+TEST_CASE("vertices in the middle of straight sides are no corners", "[forecast]") {
+  test::SeededRandom random(454);
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const double turn = random.uniform(0, 6), c = std::cos(turn), s = std::sin(turn);
+    const int n = random.integer(3, 9), cuts = random.integer(1, 4);
+    std::vector<Vec2> plain, cut;
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2 * M_PI * k / n, after = 2 * M_PI * (k + 1) / n;
+      const Vec2 a(std::cos(angle), std::sin(angle)), b(std::cos(after), std::sin(after));
+      const auto turned = [&](const Vec2& v) {
+        return Vec2(c * v.x() - s * v.y(), s * v.x() + c * v.y() + 1.5);
+      };
+      plain.push_back(turned(a));
+      for (int j = 0; j < cuts; ++j) cut.push_back(turned(a + (b - a) * (double(j) / cuts)));
+    }
+    const NeededStiffness one = stiffness_for(on_floor(Polygon(plain), 0), .01);
+    // With round-off some of these vertices are reflex: the polygon is not quite convex.
+    const NeededStiffness other = stiffness_for(on_floor(Polygon(cut), 0), .01);
+    INFO(n << " sides, " << cuts << " parts each");
+    CHECK(other.corner == Approx(one.corner).epsilon(.11));  // both are rounded to two digits
+    // Of a mesh the same.
+    const Model rigid = on_floor(Polygon(plain), 0, test::length_choice(1));
+    Model mesh = rigid;
+    mesh.bodies.pop_back();
+    DeformableBody body;
+    body.name = "body";
+    body.mesh = fill_mesh(Polygon(plain), .5, ElementShape::triangle);
+    mesh.deformables = {body};
+    const double as_mesh = stiffness_for(mesh, .01).corner;
+    const double as_rigid = stiffness_for(rigid, .01).corner;
+    const double inradii =
+        std::pow(std::min(1., inradius_of(rigid, 1)) / std::min(1., inradius_of(mesh, 1)), 3);
+    CHECK(as_mesh == Approx(as_rigid * inradii).epsilon(.15));
   }
 }
 
