@@ -3,7 +3,9 @@ include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
 
 # What only those need who write programs with the library is the component "development".
 install(TARGETS apothem_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS apothem_skeleton RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/apothem)
+if(NOT APOTHEM_OBJECTS_FROM)
+  install(TARGETS apothem_skeleton RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/apothem)
+endif()
 install(TARGETS apothem apothem_files apothem_mechanics apothem_geometry EXPORT apothem
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(CODE "set(source \"${PROJECT_SOURCE_DIR}\")

@@ -19,23 +19,19 @@ endforeach()
 add_custom_target(apothem_images
   COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/images/make.py $<TARGET_FILE:apothem_program>
   DEPENDS apothem_program USES_TERMINAL)
-if(APOTHEM_TESTS)
-  if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    add_test(NAME docs.images
-             COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/images/make.py $<TARGET_FILE:apothem_program> --check
-                     fig-19 energy impact)
-    set_tests_properties(docs.images PROPERTIES SKIP_RETURN_CODE 77)
-  endif()
+if(APOTHEM_TESTS AND CMAKE_BUILD_TYPE STREQUAL "Release")
+  add_test(NAME docs.images
+           COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/images/make.py $<TARGET_FILE:apothem_program> --check
+                   fig-19 energy impact)
+  set_tests_properties(docs.images PROPERTIES SKIP_RETURN_CODE 77)
   add_test(NAME docs.numbers COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --texts)
   add_test(NAME docs.check_numbers
            COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/docs/test_check_numbers.py)
   # The values of the cheap commands, and of the scenes whose tests have run. Times are compared as ratios to the
   # machine's arithmetic; others use the machine, so a factor of 4 is
   # allowed, and no other test runs meanwhile.
-  if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    add_test(NAME docs.values
-             COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
-                     --tests ${PROJECT_BINARY_DIR} --scenes ${PROJECT_BINARY_DIR}/scenes --quick --times x4 --brief)
-    set_tests_properties(docs.values PROPERTIES FIXTURES_REQUIRED scenes RUN_SERIAL ON)
-  endif()
+  add_test(NAME docs.values
+           COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
+                   --tests ${PROJECT_BINARY_DIR} --scenes ${PROJECT_BINARY_DIR}/scenes --quick --times x4 --brief)
+  set_tests_properties(docs.values PROPERTIES FIXTURES_REQUIRED scenes RUN_SERIAL ON)
 endif()

@@ -132,9 +132,15 @@ template <bool damped, bool forces>
 double dispatch(const Blocks& blocks) {
   return with_element(blocks.kind, [&]<class Element>(Element) {
     return with_law(blocks.material.elastic, [&]<class Law>(const Law&) {
-      return with_widest([&](auto lanes) __attribute__((always_inline)) {
+      const auto kernel = [&](auto lanes) __attribute__((always_inline)) {
         return work_through<decltype(lanes)::value, Element, Law, damped, forces>(blocks);
-      });
+      };
+      // Energies are asked for rarely: one version of their kernels is enough.
+      if constexpr (forces) {
+        return with_widest(kernel);
+      } else {
+        return kernel(Lanes<4>());
+      }
     });
   });
 }

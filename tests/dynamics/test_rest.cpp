@@ -59,27 +59,28 @@ Model ratio(double share) {
   return model;
 }
 
-// Courses of bricks that overlap by half.
+// Courses of bricks that overlap by half: a quarter of them in short runs.
 Model wall(double share) {
+  const int size = long_run() ? 10 : 5;
   Model model = empty();
   tilt(model, .1, share);
   add_floor(model);
-  for (int course = 0; course < 10; ++course) {
-    for (int k = 0; k <= 9 + course % 2; ++k) {
+  for (int course = 0; course < size; ++course) {
+    for (int k = 0; k < size + course % 2; ++k) {
       const double x0 = course % 2 == 0 ? k : std::max(0., k - .5);
-      const double x1 = course % 2 == 0 ? k + 1 : std::min(10., k + .5);
+      const double x1 = course % 2 == 0 ? k + 1 : std::min<double>(size, k + .5);
       add(model, samples::block(x0, .4 * course, x1, .4 * (course + 1)));
     }
   }
   return model;
 }
 
-// Rows of blocks on a slope, with joints along and across it.
+// Rows of blocks on a slope, with joints along and across it: half of them in short runs.
 Model jointed_slope(double share) {
   Model model = empty();
   tilt(model, std::tan(26.5 * M_PI / 180), share);
   add_floor(model);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < (long_run() ? 8 : 4); ++i) {
     for (int j = 0; j < 4; ++j) {
       add(model, samples::block(1.5 * i, .5 * j, 1.5 * (i + 1), .5 * (j + 1)));
     }
