@@ -141,11 +141,7 @@ class EndSnapper {
 Face face_of(OGRGeometryH polygon) {
   Face face;
   for (int i = 0; i < gdal().OGR_G_GetGeometryCount(polygon); ++i) {
-    OGRGeometryH ring = gdal().OGR_G_GetGeometryRef(polygon, i);
-    auto& points = face.emplace_back();
-    for (int k = 0; k < gdal().OGR_G_GetPointCount(ring); ++k) {
-      points.emplace_back(gdal().OGR_G_GetX(ring, k), gdal().OGR_G_GetY(ring, k));
-    }
+    face.push_back(points_of(gdal().OGR_G_GetGeometryRef(polygon, i)));
   }
   return face;
 }
