@@ -368,22 +368,10 @@ void ContactTerm::start_ledger() {
   counts_ = {};
 }
 
-std::vector<double> ContactTerm::slopes() const {
-  const Surfaces& surfaces = contacts_.surfaces();
-  std::vector<double> slopes(static_cast<size_t>(surfaces.body_count()));
-  for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
-    double& slope = slopes[surfaces.body(i)];
-    slope = std::max(slope, surfaces.kind(i) == SurfaceKind::outline
-                                ? surfaces.outlines().bodies[i].slope()
-                                : surfaces.shapes().slope(i));
-  }
-  return slopes;
-}
-
 void ContactTerm::bound_step(StepBounds& bounds) {
   bounds.bodies = contact_step_limit(model_);
   if (!touches_meshes(model_)) return;
-  const std::vector<double> slope = slopes();
+  const std::vector<double> slope = contacts_.surfaces().slopes();
   const double steepest = *std::max_element(slope.begin() + contacts_.surfaces().rigid_count(),
                                             slope.end());  // of meshes, 1/m
   double rigid = 0;

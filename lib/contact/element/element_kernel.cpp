@@ -365,19 +365,9 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-// The steepest slope of each body's potentials, 1/m.
-std::vector<double> ElementKernel::slopes() const {
-  std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
-  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
-    double& own = slope[surfaces_.body(i)];
-    own = std::max(own, surfaces_.shapes().slope(i));
-  }
-  return slope;
-}
-
 double ElementKernel::rate(std::span<const double> node_mass) const {
   const auto bodies = static_cast<size_t>(surfaces_.body_count());
-  const std::vector<double> slope = slopes();
+  const std::vector<double> slope = surfaces_.slopes();
   std::vector<double> other(bodies);  // steepest slope among the other bodies
   for (size_t a = 0; a < bodies; ++a) {
     for (size_t b = 0; b < bodies; ++b) {

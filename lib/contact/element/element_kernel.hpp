@@ -53,7 +53,6 @@ class ElementKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
-  [[nodiscard]] std::vector<double> slopes() const;
   /// Two polygons that touch.
   struct Touch {
     SurfaceIndex a, b;
