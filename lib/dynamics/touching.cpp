@@ -1,5 +1,6 @@
 #include "lib/dynamics/touching.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
