@@ -161,7 +161,7 @@ class Reproduction {
           }
         };
     if (!figure.sources.empty()) unless_cut_short(&Reproduction::draw_curves);
-    for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
+    for (const std::string& scene : figure.scenes) add_numbers(figure, scene, report);
     if (!figure.field_sources.empty()) unless_cut_short(&Reproduction::draw_fields);
     if (!figure.comparisons.empty()) unless_cut_short(&Reproduction::compare_tables, "comparison");
     if (!figure.potentials.empty()) draw_potentials(figure, folder, report);
@@ -172,7 +172,7 @@ class Reproduction {
 
   void draw_curves(const Figure& figure, const std::string& folder, ReportFigure& report) {
     const CurveFigure drawn = figure.drawn(folders_);
-    for (const ReportNumber& number : curve_numbers(figure, drawn)) state(number, report);
+    for (const ReportNumber& number : curve_numbers(figure, drawn)) add_number(number, report);
     std::vector<std::string> files;
     switch (write_curves(folder, drawn, files)) {
       case Plotted::yes:
@@ -198,7 +198,7 @@ class Reproduction {
     for (const char* file : {"fields.png", "fields.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
-    for (const ReportNumber& number : drawn.numbers) state(number, report);
+    for (const ReportNumber& number : drawn.numbers) add_number(number, report);
   }
 
   void draw_potentials(const Figure& figure, const std::string& folder, ReportFigure& report) {
@@ -207,13 +207,14 @@ class Reproduction {
     for (const char* file : {"potentials.png", "potentials.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
-    for (const ReportNumber& number : potential_numbers(figure.potentials)) state(number, report);
+    for (const ReportNumber& number : potential_numbers(figure.potentials))
+      add_number(number, report);
   }
 
   void compare_tables(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
     for (const TableComparison& comparison : figure.comparisons) {
       for (const ReportNumber& number : numbers_of(comparison, data_, folders_.studies)) {
-        state(number, report);
+        add_number(number, report);
       }
     }
   }
@@ -238,7 +239,7 @@ class Reproduction {
     report.players.push_back({title, file});
   }
 
-  void state(const ReportNumber& number, ReportFigure& report) {
+  void add_number(const ReportNumber& number, ReportFigure& report) {
     report.numbers.push_back(number);
     ++numbers_;
     if (number.met) return;
@@ -246,7 +247,7 @@ class Reproduction {
     fmt::print("  MISSED {}: {}\n", number.scene, number.what);
   }
 
-  void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
+  void add_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
     const auto outcome = nlohmann::json::parse(runs_.outcome(scene));
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
@@ -259,10 +260,10 @@ class Reproduction {
         continue;
       }
       const nlohmann::json& value = e.at("value");  // null if the run has no row in its time window
-      state({scene, in_words(e), e.at("unit"), e.at("expected"),
-             value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met"),
-             basis_of(e), e.at("source")},
-            report);
+      add_number({scene, in_words(e), e.at("unit"), e.at("expected"),
+                  value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"),
+                  e.at("met"), basis_of(e), e.at("source")},
+                 report);
     }
   }
 
