@@ -20,7 +20,7 @@ set(APOTHEM_PUBLIC_HEADERS
   execution/elementary.hpp
   execution/pack.hpp
   execution/parallel.hpp
-  execution/stopwatch.hpp
+  execution/phase_timer.hpp
   execution/worker_lists.hpp
   fem/kinds.hpp
   fem/stress.hpp

@@ -111,7 +111,7 @@ Work step(ElementKind kind, int count, int threads) {
     DegreesOfFreedom dofs;
     State state;
     double dt = 0;
-    Stopwatch clock;
+    PhaseTimer clock;
     Prepared(Model&& m, int threads)
         : model(std::move(m)),
           elements(model, threads),

@@ -16,12 +16,12 @@
 namespace apothem {
 namespace {
 
-struct Pair {
+struct ReferencePair {
   Polygon a, b;
   Potential potential_a, potential_b;
   PairResult exact;
 };
-using Pairs = std::vector<Pair>;
+using Pairs = std::vector<ReferencePair>;
 
 // Overlapping pairs, the centres 1.2 apart, moved by `offset`.
 Pairs touching_pairs(double offset = 0) {
@@ -44,7 +44,7 @@ Pairs touching_pairs(double offset = 0) {
 // The same, moved apart; their boxes may still overlap.
 Pairs missing_pairs() {
   Pairs pairs = touching_pairs();
-  for (Pair& pair : pairs) {
+  for (ReferencePair& pair : pairs) {
     pair.exact = {};
     pair.exact.integral.weight = 1;
     const Vec2 away = pair.b[0] + pair.b[2] - pair.a[0] - pair.a[2];
@@ -58,7 +58,7 @@ Work by_method(Pairs made, const Method& method) {
   const auto pairs = std::make_shared<Pairs>(std::move(made));
   const auto extras = [pairs, method] {
     double worst = 0, failures = 0;
-    for (const Pair& pair : *pairs) {
+    for (const ReferencePair& pair : *pairs) {
       double error = HUGE_VAL;
       try {
         error = (method(pair).integral.force - pair.exact.integral.force).norm() /
@@ -74,7 +74,7 @@ Work by_method(Pairs made, const Method& method) {
     return std::vector<Extra>{{"error", worst}, {"failures", failures}};
   };
   const auto once = [pairs, method] {
-    for (const Pair& pair : *pairs) {
+    for (const ReferencePair& pair : *pairs) {
       try {
         keep(method(pair));
       } catch (const std::runtime_error&) {
@@ -108,7 +108,7 @@ struct ConvexCases {
 
 Work by_edges(const Pairs& pairs) {
   const auto cases = std::make_shared<ConvexCases>();
-  for (const Pair& pair : pairs) {
+  for (const ReferencePair& pair : pairs) {
     for (const Potential* potential : {&pair.potential_a, &pair.potential_b}) {
       cases->shapes.place(cases->shapes.add(*potential), 0, 0, 0);
     }
@@ -209,13 +209,14 @@ std::vector<BenchmarkCase> pair_cases() {
        {std::pair("inexact", Arithmetic::inexact), std::pair("exact", Arithmetic::exact)}) {
     enter(std::string("quad_pair_overlap_") + name,
           std::string("the overlap polygon by CGAL, ") + name, [arithmetic = arithmetic] {
-            return by_method(touching_pairs(), [arithmetic](const Pair& p) {
+            return by_method(touching_pairs(), [arithmetic](const ReferencePair& p) {
               return overlap_method(p.a, p.potential_a, p.b, p.potential_b, arithmetic);
             });
           });
   }
   enter("quad_pair_oracle", "the reference: exact overlap, 100 digits", [] {
-    return by_method(touching_pairs(), [](const Pair& p) { return exact_method(p.a, p.b, {}); });
+    return by_method(touching_pairs(),
+                     [](const ReferencePair& p) { return exact_method(p.a, p.b, {}); });
   });
   for (const auto& [field, name] :
        {std::pair(Field::roof, "roof"), std::pair(Field::distance, "distance field")}) {

@@ -164,29 +164,6 @@ Polygon random_star_shaped(Random& random, int n, double inner) {
       [](const Polygon& p) { return area_moments(p).area > .05; });
 }
 
-Polygon random_holed(Random& random, int holes) {
-  constexpr int kMostTries = 1000;
-  const std::vector<Vec2> outer = random_star_shaped(random, random.integer(5, 24), .5).vertices();
-  const double most = .5 / std::sqrt(holes);
-  Rings rings;
-  for (int i = 0; static_cast<int>(rings.size()) < holes && (i < kMostTries || rings.empty());
-       ++i) {
-    const int n = random.integer(3, 9);
-    const Polygon shape =
-        random.integer(0, 1) == 0 ? regular(n) : random_star_shaped(random, n + 1, .3);
-    const Vec2 centre(random.uniform(-1, 1), random.uniform(-1, 1));
-    rings.push_back(posed(scaled(shape, most * random.uniform(.1, 1)), centre,
-                          random.uniform(0, 2 * std::acos(-1)))
-                        .vertices());
-    try {
-      const Polygon valid(outer, rings);
-    } catch (const InvalidPolygon&) {
-      rings.pop_back();
-    }
-  }
-  return Polygon(outer, rings);
-}
-
 Polygon coastline(Random& random, int n) {
   std::vector<Vec2> ring = regular(6).vertices();
   while (static_cast<int>(ring.size()) < n) {

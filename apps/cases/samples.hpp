@@ -56,9 +56,6 @@ Polygon random_quad(Random& random);
 Polygon random_convex(Random& random, int n);
 /// Star-shaped about the origin: n radii from `inner` to 1 at random angles.
 Polygon random_star_shaped(Random& random, int n, double inner);
-/// A star-shaped polygon about the origin with random holes, star-shaped and regular ones. There
-/// are fewer than `holes` where no more have been found to fit, but at least one.
-Polygon random_holed(Random& random, int holes);
 
 /// A hexagon whose edges are divided and bent at their middles again and again, like a coastline,
 /// until there are n vertices.

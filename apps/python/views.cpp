@@ -162,9 +162,7 @@ void bind_forces(py::module_& module) {
           "View (m, 2): force on each node, N.");
 }
 
-}  // namespace
-
-void bind_views(py::module_& module) {
+void bind_bodies(py::module_& module) {
   py::class_<Bodies>(module, "Bodies", R"(The n rigid bodies of a simulation.
 
 position, velocity and force are views of the simulation's own memory, without a copy. They show the
@@ -198,7 +196,9 @@ body that the scene will ever have; `present` says which of them are in the worl
           "List of n lists of new arrays (k, 2): the vertices of the holes of each body where they "
           "are now, relative to Simulation.origin, m, clockwise.")
       .def("__len__", [](const Bodies& b) { return model_of(b.run).bodies.size(); });
+}
 
+void bind_nodes(py::module_& module) {
   py::class_<Nodes>(module, "Nodes",
                     R"(The m nodes of the meshes of all deformable bodies, one mesh after the other.
 
@@ -221,7 +221,9 @@ Bodies. The simulation stores displacements, so `position` is computed and a cop
           [](const Nodes& n, const std::string& name) { return slice_of(n.run, name, node_count); },
           py::arg("name"), "The slice of the rows of a deformable body. Raises KeyError.")
       .def("__len__", [](const Nodes& n) { return n.run->look().state().layout.nodes; });
+}
 
+void bind_elements(py::module_& module) {
   py::class_<Elements>(module, "Elements",
                        "The elements of the meshes of all deformable bodies, one mesh after the "
                        "other.")
@@ -244,6 +246,14 @@ Bodies. The simulation stores displacements, so `position` is computed and a cop
         }
         return count;
       });
+}
+
+}  // namespace
+
+void bind_views(py::module_& module) {
+  bind_bodies(module);
+  bind_nodes(module);
+  bind_elements(module);
   bind_forces(module);
 }
 

@@ -16,6 +16,7 @@
 #include "lib/output/report.hpp"
 #include "lib/player/player.hpp"
 #include "lib/text/csv.hpp"
+#include "lib/text/file.hpp"
 #include "lib/text/words.hpp"
 #include "version.hpp"
 
@@ -43,38 +44,6 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
   }
   return names;
 }
-
-constexpr const char* kAboutReport =
-    "<p>The paper: X. Liu, J. Mao, L. Zhao, L. Shao, T. Li, <i>The distance potential "
-    "function-based finite-discrete element method</i>, Computational Mechanics (2020), <a "
-    "href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. The "
-    "pictures are drawn anew from runs of this program, with the paper's data where it gives "
-    "them. The paper shows its results as curves and fields. No number here is read off its "
-    "pictures: each has another reference, which is named beside it, or rests on what its text "
-    "states. Forces are per thickness of 1 m.</p>"
-    "<p><i>Reproduced</i>: what the paper says of the figure comes out here. <i>Reproduced with "
-    "an explained difference</i>: it does, but for what is said beside it. <i>Of the same "
-    "kind</i>: "
-    "it looks as the paper says, and no number can be compared. <i>Not confirmed</i>: the runs "
-    "here "
-    "do not show what the paper concludes. A verdict holds as long as all numbers of its figure "
-    "are within their tolerance.</p>"
-    "<p>What the numbers are compared with, beside the paper's words: <i>closed forms</i>; an "
-    "<i>independent prototype</i> of the contact method and an <i>independent explicit code</i> "
-    "for deformable bodies, which share no code with this program; <i>CalculiX</i> 2.20 with "
-    "quadratic elements; <i>Box2D</i> v3, which has another contact model. "
-    "<code>data/reference/README.md</code> says how each table was made. <i>Internal checks</i> "
-    "are laws that every run obeys, and earlier results of this program, which show changes but "
-    "prove nothing.</p>";
-
-constexpr const char* kFiguresLeftOut =
-    "<h2 id=\"left-out\">Figures of the paper that are not here</h2>\n"
-    "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
-    "of a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) "
-    "hold the models. Fig. 12 has the model of Figs. 13 to 15, Fig. 16 that of Fig. 17, Fig. 18 "
-    "that of Figs. 19 to 21, Figs. 22 and 23 model and load of Fig. 24, Fig. 25 the model of "
-    "Figs. 26 to 28 and Fig. 29 that of Figs. 30 and 31: there stands what was chosen where a "
-    "drawing has no numbers.</p>\n";
 
 std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   const nlohmann::json& name = expectation.at("basis");
@@ -134,10 +103,12 @@ class Reproduction {
     }
     // After an interruption it holds the figures that are complete.
     const std::string report = options_.folder + "/report.html";
-    write_report(report,
-                 {"Figures of the distance-potential FEM-DEM paper", kAboutReport,
-                  fmt::format("apothem {} reproduce", kVersion), kFiguresLeftOut},
-                 reports_);
+    write_report(
+        report,
+        {"Figures of the distance-potential FEM-DEM paper",
+         find_text(data_ + "/figures/about.html"), fmt::format("apothem {} reproduce", kVersion),
+         find_text(data_ + "/figures/left-out.html")},
+        reports_);
     write_file(options_.folder + "/numbers.csv", numbers_table(reports_));
     fmt::print("{} of {} numbers within their tolerance; {}\n", numbers_ - missed_, numbers_,
                report);
@@ -190,7 +161,7 @@ class Reproduction {
           }
         };
     if (!figure.sources.empty()) unless_cut_short(&Reproduction::draw_curves);
-    for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
+    for (const std::string& scene : figure.scenes) add_numbers(figure, scene, report);
     if (!figure.field_sources.empty()) unless_cut_short(&Reproduction::draw_fields);
     if (!figure.comparisons.empty()) unless_cut_short(&Reproduction::compare_tables, "comparison");
     if (!figure.potentials.empty()) draw_potentials(figure, folder, report);
@@ -201,7 +172,7 @@ class Reproduction {
 
   void draw_curves(const Figure& figure, const std::string& folder, ReportFigure& report) {
     const CurveFigure drawn = figure.drawn(folders_);
-    for (const ReportNumber& number : curve_numbers(figure, drawn)) state(number, report);
+    for (const ReportNumber& number : curve_numbers(figure, drawn)) add_number(number, report);
     std::vector<std::string> files;
     switch (write_curves(folder, drawn, files)) {
       case Plotted::yes:
@@ -227,7 +198,7 @@ class Reproduction {
     for (const char* file : {"fields.png", "fields.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
-    for (const ReportNumber& number : drawn.numbers) state(number, report);
+    for (const ReportNumber& number : drawn.numbers) add_number(number, report);
   }
 
   void draw_potentials(const Figure& figure, const std::string& folder, ReportFigure& report) {
@@ -236,13 +207,14 @@ class Reproduction {
     for (const char* file : {"potentials.png", "potentials.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
-    for (const ReportNumber& number : potential_numbers(figure.potentials)) state(number, report);
+    for (const ReportNumber& number : potential_numbers(figure.potentials))
+      add_number(number, report);
   }
 
   void compare_tables(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
     for (const TableComparison& comparison : figure.comparisons) {
       for (const ReportNumber& number : numbers_of(comparison, data_, folders_.studies)) {
-        state(number, report);
+        add_number(number, report);
       }
     }
   }
@@ -267,7 +239,7 @@ class Reproduction {
     report.players.push_back({title, file});
   }
 
-  void state(const ReportNumber& number, ReportFigure& report) {
+  void add_number(const ReportNumber& number, ReportFigure& report) {
     report.numbers.push_back(number);
     ++numbers_;
     if (number.met) return;
@@ -275,7 +247,7 @@ class Reproduction {
     fmt::print("  MISSED {}: {}\n", number.scene, number.what);
   }
 
-  void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
+  void add_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
     const auto outcome = nlohmann::json::parse(runs_.outcome(scene));
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
@@ -288,10 +260,10 @@ class Reproduction {
         continue;
       }
       const nlohmann::json& value = e.at("value");  // null if the run has no row in its time window
-      state({scene, in_words(e), e.at("unit"), e.at("expected"),
-             value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met"),
-             basis_of(e), e.at("source")},
-            report);
+      add_number({scene, in_words(e), e.at("unit"), e.at("expected"),
+                  value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"),
+                  e.at("met"), basis_of(e), e.at("source")},
+                 report);
     }
   }
 

@@ -117,7 +117,7 @@ void RunPool::launch(Child child) {
   if (ftruncate(child.messages, 0) != 0) {
     throw SystemFailure(messages_of(study_.folder_of(*child.run)), errno);
   }
-  study_.begin(*child.run, child.resumed);
+  study_.begin_run(*child.run, child.resumed);
   const int error = start_program(command_of(study_, *child.run, child.resumed), child.messages,
                                   child.messages, child.process);
   if (error != 0) {
@@ -173,7 +173,7 @@ bool RunPool::is_over(const Child& child, int status) {
     ending.message = last_error(messages_of(study_.folder_of(*child.run)));
     if (ending.message.empty()) ending.message = fmt::format("exit code {}", ending.exit_code);
   }
-  study_.end(*child.run, ending);
+  study_.end_run(*child.run, ending);
   ++progress_.ended;
   if (!done && !interrupted) ++progress_.failed;
   return true;

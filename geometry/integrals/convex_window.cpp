@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/integrals/edge_trace.hpp"
+#include "geometry/polygon/segment.hpp"
 
 namespace apothem {
 
@@ -42,7 +43,7 @@ int low_line(const PlacedPotential& p, const Vec2& point) {
 
 Vec2 nearest_on_edge(const PlacedPotential& p, int e, const Vec2& point) {
   const Vec2 from(p.x[e], p.y[e]), edge = Vec2(p.x[e + 1], p.y[e + 1]) - from;
-  return from + std::clamp(edge.dot(point - from) / edge.squaredNorm(), 0., 1.) * edge;
+  return from + nearest_on_segment(point - from, edge).share * edge;
 }
 
 // Two edges that are near each other, found by going to and fro between the polygons.

@@ -137,11 +137,8 @@ class PieceJoiner {
 void put_in_order(Pieces& pieces, int outline_size) {
   std::vector<int> order(pieces.nodes.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin() + outline_size, order.end(), [&](int i, int j) {
-    const Vec2& p = pieces.nodes[i];
-    const Vec2& q = pieces.nodes[j];
-    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-  });
+  std::stable_sort(order.begin() + outline_size, order.end(),
+                   [&](int i, int j) { return precedes(pieces.nodes[i], pieces.nodes[j]); });
   Pieces sorted;
   std::vector<int> index(order.size());
   for (size_t i = 0; i < order.size(); ++i) {

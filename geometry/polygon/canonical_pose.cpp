@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/polygon/predicates.hpp"
+
 namespace apothem {
 namespace {
 
 // Each of the three steps in which points are made symmetric halves a sum.
 constexpr int kHalvings = 3;
-
-bool precedes(const Vec2& p, const Vec2& q) {
-  return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-}
 
 bool ring_precedes(const std::vector<Vec2>& p, const std::vector<Vec2>& q) {
   return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), precedes);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/polygon/point.hpp"
@@ -20,6 +21,11 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 /// The smallest orientation() of three successive vertices of a ring: +1 where the boundary turns
 /// left at every vertex, 0 where it also goes straight on, -1 where it turns right somewhere.
 int smallest_turn(std::span<const Vec2> ring);
+
+/// The order of points by x, then by y.
+inline bool precedes(const Vec2& p, const Vec2& q) {
+  return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+}
 
 /// True if the closed segments ab and cd have at least one point in common.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);

@@ -372,10 +372,6 @@ class Search {
   std::vector<Heights> planes_;
 };
 
-bool before(const Vec2& p, const Vec2& q) {
-  return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-}
-
 // The largest radius, and both ends of each segment of centres, which are equal for single ones.
 struct FoundCircle {
   double radius;
@@ -419,12 +415,12 @@ InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress&
   std::vector<Centre> placed;
   for (size_t i = 0; i < ends.size(); i += 2) {
     placed.push_back({ends[i], ends[i + 1]});
-    if (before(placed.back().last, placed.back().first)) {
+    if (precedes(placed.back().last, placed.back().first)) {
       std::swap(placed.back().first, placed.back().last);
     }
   }
   std::sort(placed.begin(), placed.end(),
-            [](const Centre& a, const Centre& b) { return before(a.first, b.first); });
+            [](const Centre& a, const Centre& b) { return precedes(a.first, b.first); });
   InscribedCircle circle{found.radius, {}};
   for (const Centre& c : placed) {
     circle.centres.push_back(c.first);

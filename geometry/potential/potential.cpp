@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/potential/lower_envelope.hpp"
 #include "lib/execution/elementary.hpp"
@@ -74,11 +75,8 @@ void find_top(Potential& potential) {
     if (!(corner.height >= potential.top * (1 - kSameHeight))) continue;
     if (!any) first = last = corner.point;
     any = true;
-    const auto before = [](const Vec2& p, const Vec2& q) {
-      return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-    };
-    if (before(corner.point, first)) first = corner.point;
-    if (before(last, corner.point)) last = corner.point;
+    if (precedes(corner.point, first)) first = corner.point;
+    if (precedes(last, corner.point)) last = corner.point;
   }
   const double slope = potential.gradients.front().norm();
   const bool level = (last - first).norm() * slope > 1e-9 * potential.top;

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/predicates.hpp"
 
 namespace apothem {
 namespace {
@@ -73,14 +74,9 @@ bool is_double(const Kernel::FT& number) {
   return bounds.first == bounds.second;
 }
 
-struct Before {
-  bool operator()(const Vec2& a, const Vec2& b) const {
-    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-  }
-};
-
 // The numbers of the vertices of rings, by their places: of several at a place, the first one.
-using Numbers = std::map<Vec2, int, Before>;
+using Numbers =
+    std::map<Vec2, int, decltype([](const Vec2& p, const Vec2& q) { return precedes(p, q); })>;
 
 Numbers numbers_of_vertices(const Rings& a, const Rings& b) {
   Numbers numbers;

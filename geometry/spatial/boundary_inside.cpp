@@ -40,10 +40,7 @@ enum class Side { inner, outer };
 class CutPolygon {
  public:
   explicit CutPolygon(const Polygon& polygon) : polygon_(polygon), box_(bounding_box(polygon)) {
-    for (int k = 0; k < polygon.rings(); ++k) {
-      const std::span<const Vec2> ring = polygon.ring(k);
-      trees_.emplace_back(std::vector<Vec2>(ring.begin(), ring.end()));
-    }
+    for (std::vector<Vec2>& ring : rings_of(polygon)) trees_.emplace_back(std::move(ring));
   }
 
   // A place on the line: the foot of the perpendicular from a vertex that is near, and the rest of

@@ -88,6 +88,7 @@ class Contacts {
   /// True if there is friction or damping.
   [[nodiscard]] bool dissipates() const { return tangential_; }
   [[nodiscard]] bool damped() const { return table_.damped(); }
+  [[nodiscard]] const PairTable& table() const { return table_; }
   /// Adds to the ledger what friction and damping take because the path of a step is curved. It
   /// must be called after the forces at the end of a drift of dt (s) are known.
   void add_bend_losses(Dynamics dynamics, double dt);

@@ -199,10 +199,9 @@ std::string ContactTerm::describe() const {
     if (touches_itself(model_)) text += ", also with themselves";
     text += describe_shallow_collars();
   }
-  text += pair_table(model_).rough()
-              ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)
-              : "; no friction";
-  if (pair_table(model_).damped()) {
+  text += contacts_.table().rough() ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)
+                                    : "; no friction";
+  if (contacts_.damped()) {
     text += fmt::format("; viscous damping, {} {:g} and {:g}",
                         law.damping.are_times ? "times" : "ratios", law.damping.normal,
                         law.damping.tangential);
@@ -369,22 +368,10 @@ void ContactTerm::start_ledger() {
   counts_ = {};
 }
 
-std::vector<double> ContactTerm::slopes() const {
-  const Surfaces& surfaces = contacts_.surfaces();
-  std::vector<double> slopes(static_cast<size_t>(surfaces.body_count()));
-  for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
-    double& slope = slopes[surfaces.body(i)];
-    slope = std::max(slope, surfaces.kind(i) == SurfaceKind::outline
-                                ? surfaces.outlines().bodies[i].slope()
-                                : surfaces.shapes().slope(i));
-  }
-  return slopes;
-}
-
 void ContactTerm::bound_step(StepBounds& bounds) {
   bounds.bodies = contact_step_limit(model_);
   if (!touches_meshes(model_)) return;
-  const std::vector<double> slope = slopes();
+  const std::vector<double> slope = contacts_.surfaces().slopes();
   const double steepest = *std::max_element(slope.begin() + contacts_.surfaces().rigid_count(),
                                             slope.end());  // of meshes, 1/m
   double rigid = 0;
@@ -393,7 +380,7 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
   const double of_nodes = contacts_.node_rate(dofs_.free_node_mass());
-  const double stiffest = pair_table(model_).stiffest() * model_.thickness;
+  const double stiffest = contacts_.table().stiffest() * model_.thickness;
   const double rate = std::sqrt(of_nodes + stiffest * rigid);
   bounds.nodes = {2 / hypotenuse(2 / bounds.nodes.step, rate), "elements and their contacts"};
 }

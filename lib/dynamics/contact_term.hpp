@@ -94,8 +94,6 @@ class ContactTerm final : public Term {
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
-  /// The largest slope of the potential of each body, rigid ones first, 1/m.
-  [[nodiscard]] std::vector<double> slopes() const;
   [[nodiscard]] const Peak& penetration() const { return penetration_; }
   [[nodiscard]] const Peak& relative_penetration() const { return relative_penetration_; }
   [[nodiscard]] const Peak& force() const { return force_; }

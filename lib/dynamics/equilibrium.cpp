@@ -21,8 +21,8 @@ constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
 constexpr double kRigidNoise = 8;                // times that: corners are turned and moved
 constexpr double kFar = 100;                     // of the scene's size: there a body is lost
-// What bodies have slipped that move at a settled start, the fastest one, of the scene's size. It
-// saturates every spring: a body that is dragged along is lost before it has gone so far.
+// At a settled start the fastest body has slipped by this multiple of the scene's size, slower ones
+// by less in proportion to their speeds. That saturates every friction spring.
 constexpr double kSlide = 1e5;
 
 }  // namespace
@@ -81,7 +81,7 @@ void Equilibrium::find_forces(State& state, const State& before) {
   for (size_t c = 0; c < displacement_.size(); ++c) {
     displacement_[c] = state.x[c] - before.x[c] + (slip_.empty() ? 0 : slip_[c]);
   }
-  Stopwatch off;
+  PhaseTimer off;
   for (const auto& term : terms_)
     term->add_forces({state, displacement_, 1, lambda_, off, 0, true, true, slip_});
   for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[c] + weight(c);

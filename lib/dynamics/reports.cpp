@@ -85,7 +85,8 @@ std::vector<PairDepth> Simulation::overlaps() const {
 }
 
 Forecast Simulation::forecast() const {
-  return contact_ ? apothem::forecast(model_, contact_->slopes()) : Forecast{};
+  return contact_ ? apothem::forecast(model_, contact_->contacts().surfaces().slopes())
+                  : Forecast{};
 }
 
 PhaseSeconds Simulation::phase_seconds() const {

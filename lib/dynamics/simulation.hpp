@@ -21,7 +21,7 @@
 #include "lib/dynamics/step_control.hpp"
 #include "lib/dynamics/term.hpp"
 #include "lib/dynamics/unstable.hpp"
-#include "lib/execution/stopwatch.hpp"
+#include "lib/execution/phase_timer.hpp"
 #include "lib/model/forecast.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
@@ -183,7 +183,7 @@ class Simulation {
   std::int64_t touching_before_ =
       0;  // touching pairs, summed over the steps, at the last regular look
   std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
-  Stopwatch clock_;
+  PhaseTimer clock_;
   std::int64_t verlet_steps_ = 0, timed_steps_ = 0;  // of this object; the latter are some of them
 };
 

@@ -10,7 +10,7 @@
 
 #include "lib/dynamics/ledger.hpp"
 #include "lib/dynamics/time_step.hpp"
-#include "lib/execution/stopwatch.hpp"
+#include "lib/execution/phase_timer.hpp"
 #include "lib/model/state.hpp"
 #include "lib/solver/tangent.hpp"
 
@@ -22,7 +22,7 @@ struct Evaluation {
   std::span<const double> velocity;  ///< what springs and dampers follow over dt
   double dt;                         ///< s; 0: nothing has moved since the last evaluation
   std::span<double> lambda;  ///< of each rigid body: bound of stiffness / inertia, 1/s^2; to add to
-  Stopwatch& clock;
+  PhaseTimer& clock;
   double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
   /// The static solver tries a state: nothing of it is recorded. `velocity` times `dt` is then the
   /// displacement since the start of the load step.

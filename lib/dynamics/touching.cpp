@@ -1,9 +1,11 @@
 #include "lib/dynamics/touching.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
+#include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "lib/mesh/boundary.hpp"
 #include "lib/model/inradius.hpp"
@@ -19,15 +21,11 @@ struct OutlineEdge {
 };
 
 double distance(const Vec2& point, const OutlineEdge& edge) {
-  const Vec2 along = edge.b - edge.a;
-  const double share = std::clamp((point - edge.a).dot(along) / along.squaredNorm(), 0., 1.);
-  return (point - edge.a - share * along).norm();
+  return std::sqrt(nearest_on_segment(point - edge.a, edge.b - edge.a).distance2);
 }
 
 void add_ring(BodyIndex body, const std::vector<Vec2>& ring, std::vector<OutlineEdge>& edges) {
-  for (size_t i = 0; i < ring.size(); ++i) {
-    edges.push_back({body, ring[i], ring[(i + 1) % ring.size()]});
-  }
+  for (size_t i = 0; i < ring.size(); ++i) edges.push_back({body, ring[i], after(ring, i)});
 }
 
 std::vector<OutlineEdge> outline_edges(const Model& model, const State& state) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <unordered_map>
 
 #include "lib/mesh/gmsh.hpp"
@@ -55,10 +54,9 @@ class Rows {
   template <class Number = Tag>
   Number integer(const char* what) {
     const std::string_view text = word(what);
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) refuse(text, what);
-    return value;
+    const std::optional<Number> value = find_integer<Number>(text);
+    if (!value) refuse(text, what);
+    return *value;
   }
   Tag count(const char* what) {
     const Tag n = integer(what);

@@ -4,18 +4,14 @@
 
 #include "geometry/meshing/cell_shapes.hpp"
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
 
 double ring_area(const Mesh& mesh, std::span<const int> ring) {
-  const Vec2& origin = mesh.nodes[ring.front()];
-  double twice = 0;
-  for (size_t i = 1; i + 1 < ring.size(); ++i) {
-    twice += cross(mesh.nodes[ring[i]] - origin, mesh.nodes[ring[i + 1]] - origin);
-  }
-  return twice / 2;
+  return ring_area(mesh.places(ring));
 }
 
 Vec2 mesh_centroid(const Mesh& mesh) {

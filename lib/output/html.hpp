@@ -1,4 +1,4 @@
-// Text and bytes in HTML pages.
+// Text and bytes in HTML and XML.
 #pragma once
 
 #include <string>
@@ -11,5 +11,7 @@ std::string escaped(std::string_view text);
 
 /// The bytes in base64 (RFC 4648), padded, without line breaks.
 std::string base64(std::string_view bytes);
+/// Appends them to a text.
+void add_base64(std::string& text, std::string_view bytes);
 
 }  // namespace apothem

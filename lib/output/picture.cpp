@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/polygon/predicates.hpp"
 #include "lib/output/axes.hpp"
 
 namespace apothem {
@@ -55,16 +56,16 @@ View choose_view(const Ring& ring) {
   for (const Vec2& p : ring) {
     for (const Vec2& q : ring) {
       const double length = (q - p).norm();
-      if (!(std::pair(q.x(), q.y()) > std::pair(p.x(), p.y())) || !(length > longest)) continue;
+      if (!precedes(p, q) || !(length > longest)) continue;
       longest = length;
       chord = {p, (q - p) / length, true, true};
     }
   }
-  constexpr double kLiesSo = 4;
+  constexpr double kNearlyLeast = 4;
   View upright;
   const double thickness = slenderness(box_of(ring));
   const double least = slenderness(box_of(chord(ring)));
-  upright.stretched = thickness < kThin && thickness <= kLiesSo * least;
+  upright.stretched = thickness < kThin && thickness <= kNearlyLeast * least;
   return least > 0 && least < kThin && !upright.stretched ? chord : upright;
 }
 

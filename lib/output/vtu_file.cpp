@@ -18,7 +18,6 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -26,6 +25,7 @@
 #include "lib/output/run_folder.hpp"
 #include "lib/output/vtk_grid.hpp"
 #include "lib/system/input_file.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
 
 namespace apothem {
@@ -71,10 +71,8 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
 // Whether an attribute is not there or a number from 0 to `most`.
 bool is_count(std::string_view tag, std::string_view name, size_t most) {
   if (tag.find(name) == std::string_view::npos) return true;
-  const std::string_view word = attribute(tag, name);
-  size_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size() && value <= most;
+  const auto value = find_integer<size_t>(attribute(tag, name));
+  return value && *value <= most;
 }
 
 // VTK's reader does not survive an array of a kind that it does not know, or numbers of items that

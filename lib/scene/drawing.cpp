@@ -22,16 +22,6 @@
 namespace apothem {
 namespace {
 
-using Points = std::vector<Vec2>;
-
-Points points_of(OGRGeometryH curve) {
-  Points points;
-  for (int i = 0; i < gdal().OGR_G_GetPointCount(curve); ++i) {
-    points.emplace_back(gdal().OGR_G_GetX(curve, i), gdal().OGR_G_GetY(curve, i));
-  }
-  return points;
-}
-
 // Appends the parts of a geometry without curves. `like` has their layer, name and place.
 void add_parts(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnShape>& shapes) {
   const auto add = [&](DrawnShape::Kind kind) -> DrawnShape& {
@@ -79,7 +69,7 @@ void add_geometry(OGRGeometryH geometry, const DrawnShape& like, std::vector<Dra
 Box extent_of(const std::vector<DrawnShape>& shapes) {
   Box box;
   for (const DrawnShape& shape : shapes) {
-    for (const Points& ring : shape.rings) box.include(box_of(ring));
+    for (const std::vector<Vec2>& ring : shape.rings) box.include(box_of(ring));
   }
   return box;
 }

@@ -60,16 +60,12 @@ class EndSnapper {
     std::vector<Box> boxes;
     double farthest = 0;
     for (const Segment& s : segments_) {
-      Box& box = boxes.emplace_back();
-      for (const Vec2& v : {start(s), end(s)}) {
-        box.include(v.x(), v.y());
-        farthest = std::max({farthest, std::abs(v.x()), std::abs(v.y())});
-      }
+      const Box& box = boxes.emplace_back(box_of(start(s), end(s)));
+      farthest = std::max(
+          {farthest, std::abs(box.x0), std::abs(box.y0), std::abs(box.x1), std::abs(box.y1)});
     }
     const double reach = 2.01 * tolerance_ + 1e-12 * farthest;  // more than round-off
-    for (Box& box : boxes) {
-      box = {box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach};
-    }
+    for (Box& box : boxes) box = box.grown(reach);
     std::vector<BoxPair> pairs;
     BoxGrid().find_pairs(boxes, pairs);
     near_.resize(2 * lines_.size());
@@ -145,11 +141,7 @@ class EndSnapper {
 Face face_of(OGRGeometryH polygon) {
   Face face;
   for (int i = 0; i < gdal().OGR_G_GetGeometryCount(polygon); ++i) {
-    OGRGeometryH ring = gdal().OGR_G_GetGeometryRef(polygon, i);
-    auto& points = face.emplace_back();
-    for (int k = 0; k < gdal().OGR_G_GetPointCount(ring); ++k) {
-      points.emplace_back(gdal().OGR_G_GetX(ring, k), gdal().OGR_G_GetY(ring, k));
-    }
+    face.push_back(points_of(gdal().OGR_G_GetGeometryRef(polygon, i)));
   }
   return face;
 }
@@ -183,8 +175,7 @@ std::vector<Face> faces_between(std::vector<Line> lines, double tolerance) {
     faces.push_back(face_of(gdal().OGR_G_GetGeometryRef(polygons.get(), i)));
   }
   const auto lowest = [](const Face& face) {
-    Box box;
-    for (const Vec2& v : face[0]) box.include(v.x(), v.y());
+    const Box box = box_of(face[0]);
     return std::pair(box.y0, box.x0);
   };
   std::ranges::stable_sort(faces,

@@ -63,4 +63,12 @@ QuietGdal::~QuietGdal() {
   gdal().CPLPopErrorHandler();
 }
 
+std::vector<Vec2> points_of(OGRGeometryH curve) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < gdal().OGR_G_GetPointCount(curve); ++i) {
+    points.emplace_back(gdal().OGR_G_GetX(curve, i), gdal().OGR_G_GetY(curve, i));
+  }
+  return points;
+}
+
 }  // namespace apothem

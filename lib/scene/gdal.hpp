@@ -9,6 +9,10 @@
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
+#include <vector>
+
+#include "geometry/polygon/point.hpp"
+
 // The functions of GDAL that are used, by their own names.
 #define APOTHEM_GDAL_FUNCTIONS(F)  \
   F(CPLErrorReset)                 \
@@ -88,5 +92,8 @@ class Geometry {
  private:
   OGRGeometryH handle_;
 };
+
+/// The points of a line or a ring.
+std::vector<Vec2> points_of(OGRGeometryH curve);
 
 }  // namespace apothem

@@ -209,8 +209,7 @@ class OutlineMaker {
 
   void label(DrawnShape& face) const {
     const DrawnShape* found = nullptr;
-    Box box;
-    for (const Vec2& v : face.rings[0]) box.include(v.x(), v.y());
+    const Box box = box_of(face.rings[0]);
     for (const size_t i : labels_) {
       const DrawnShape& shape = shapes_[i];
       const Vec2& place = shape.rings[0][0];

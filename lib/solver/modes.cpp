@@ -28,16 +28,16 @@ constexpr double kNothing = 1e-9;    // of what may be rounding: what vectors of
 constexpr double kNearer = 1e-3;     // their shift, of that of the others
 constexpr double kDependent = 1e-6;  // of the norm: what is left of a dependent vector
 
-struct Pair {
+struct EigenPair {
   double value;
   Vector vector;
 };
 
 // Pairs of a symmetric operator in the inner product of `Space` that are known are taken out.
 struct Known {
-  std::vector<Pair> pairs;
+  std::vector<EigenPair> pairs;
   [[nodiscard]] Vector without(Vector y, const Vector& x) const {
-    for (const Pair& p : pairs) y -= p.value * p.vector.dot(x) * p.vector;
+    for (const EigenPair& p : pairs) y -= p.value * p.vector.dot(x) * p.vector;
     return y;
   }
 };
@@ -68,18 +68,20 @@ Eigen::Index breadth(Eigen::Index size, Eigen::Index pairs) {
 }
 
 // Puts eigenvalues of several passes in order: by w^2 in ascending order.
-void sort_by_value(std::vector<Pair>& pairs) { std::ranges::stable_sort(pairs, {}, &Pair::value); }
+void sort_by_value(std::vector<EigenPair>& pairs) {
+  std::ranges::stable_sort(pairs, {}, &EigenPair::value);
+}
 
 // The `need` lowest eigenvalues above the shift, below which there are `base` ones. The pairs have
 // w^2 and vectors M^1/2 phi.
-std::vector<Pair> lowest_above(SymmetricSystem& system, double shift, int base, int need) {
-  std::vector<Pair> found;
+std::vector<EigenPair> lowest_above(SymmetricSystem& system, double shift, int base, int need) {
+  std::vector<EigenPair> found;
   Known known;
   int wanted = need;
   for (int pass = 0; pass < kMostPasses && wanted > 0; ++pass) {
     const double at = system.shift(shift);
     known.pairs.clear();
-    for (const Pair& p : found) known.pairs.push_back({1 / (p.value - at), p.vector});
+    for (const EigenPair& p : found) known.pairs.push_back({1 / (p.value - at), p.vector});
     Inverse inverse(system, known);
     const Eigen::Index most = std::min<Eigen::Index>(wanted, system.size() - 1);
     Spectra::SymEigsSolver<Inverse> lanczos(inverse, most, breadth(system.size(), most));
@@ -96,7 +98,7 @@ std::vector<Pair> lowest_above(SymmetricSystem& system, double shift, int base, 
     const size_t last = std::min(found.size(), static_cast<size_t>(need)) - 1;
     const double highest = found[last].value * (1 + kBeyond);
     const auto below =
-        std::ranges::count_if(found, [&](const Pair& p) { return p.value <= highest; });
+        std::ranges::count_if(found, [&](const EigenPair& p) { return p.value <= highest; });
     const int missing = system.count_below(highest) - base - static_cast<int>(below);
     wanted = std::max(missing, need - static_cast<int>(found.size()));
     if (found.size() == before && missing <= 0) break;
@@ -118,10 +120,10 @@ double shift_below(SymmetricSystem& system, double sign, int base) {
 }
 
 // Removes from y what lies in the space of these vectors; false if nothing is left.
-bool make_orthonormal(const std::vector<Pair>& basis, Vector& y) {
+bool make_orthonormal(const std::vector<EigenPair>& basis, Vector& y) {
   const double before = y.norm();
   for (int again = 0; again < 2; ++again) {
-    for (const Pair& p : basis) y -= p.vector.dot(y) * p.vector;
+    for (const EigenPair& p : basis) y -= p.vector.dot(y) * p.vector;
   }
   if (!(y.norm() > kDependent * before)) return false;
   y.normalize();
@@ -145,17 +147,17 @@ Vector translation(const SymmetricSystem& system, const ModalSystem& of, int axi
 
 // An orthonormal basis of the space of `vectors` that begins with the translations, as far as they
 // lie in it.
-std::vector<Pair> aligned(const SymmetricSystem& system, const ModalSystem& of,
-                          const std::vector<Pair>& vectors) {
-  std::vector<Pair> basis;
+std::vector<EigenPair> aligned(const SymmetricSystem& system, const ModalSystem& of,
+                               const std::vector<EigenPair>& vectors) {
+  std::vector<EigenPair> basis;
   const auto add = [&](const Vector& y) {
     Vector part = Vector::Zero(y.size());
-    for (const Pair& p : vectors) part += p.vector.dot(y) * p.vector;
+    for (const EigenPair& p : vectors) part += p.vector.dot(y) * p.vector;
     if (part.norm() < kDependent * y.norm()) return;
     if (make_orthonormal(basis, part)) basis.push_back({0, part});
   };
   for (const int axis : {0, 1}) add(translation(system, of, axis));
-  for (const Pair& p : vectors) {
+  for (const EigenPair& p : vectors) {
     if (basis.size() < vectors.size()) add(p.vector);
   }
   return basis;
@@ -163,10 +165,10 @@ std::vector<Pair> aligned(const SymmetricSystem& system, const ModalSystem& of,
 
 // The space of the small eigenvalues, by inverse iteration with a shift between them and all
 // others.
-std::vector<Pair> small_pairs(SymmetricSystem& system, int count, double shift) {
+std::vector<EigenPair> small_pairs(SymmetricSystem& system, int count, double shift) {
   system.shift(-shift);
   const Vector root = system.mass().cwiseSqrt();
-  std::vector<Pair> basis;
+  std::vector<EigenPair> basis;
   for (int i = 0; i < count; ++i) {
     Vector y(system.size());
     for (Eigen::Index k = 0; k < y.size(); ++k) {
@@ -175,8 +177,8 @@ std::vector<Pair> small_pairs(SymmetricSystem& system, int count, double shift) 
     basis.push_back({0, y});
   }
   for (int step = 0; step < kInverseSteps; ++step) {
-    std::vector<Pair> next;
-    for (const Pair& p : basis) {
+    std::vector<EigenPair> next;
+    for (const EigenPair& p : basis) {
       Vector y = root.cwiseProduct(system.solve(root.cwiseProduct(p.vector)));
       if (make_orthonormal(next, y)) next.push_back({0, y});
     }
@@ -197,7 +199,7 @@ bool is_dense(Eigen::Index size, int count) {
 // The pairs with the lowest eigenvalues: below -least, within it, and above it.
 struct Parts {
   int below = 0, within = 0;  // numbers of all such eigenvalues
-  std::vector<Pair> negative, small, positive;
+  std::vector<EigenPair> negative, small, positive;
 };
 
 Parts dense_parts(const SymmetricSystem& system) {
@@ -234,7 +236,7 @@ Parts sparse_parts(SymmetricSystem& system, int count) {
 
 // Sorts out which of the small eigenvalues are more than rounding, each mode by its own stiffness:
 // a soft body beside a stiff one vibrates or is unstable as well. Returns those that are rounding.
-std::vector<Pair> sort_small(const SymmetricSystem& system, Parts& parts) {
+std::vector<EigenPair> sort_small(const SymmetricSystem& system, Parts& parts) {
   const auto n = static_cast<Eigen::Index>(parts.small.size());
   if (n == 0) return {};
   Matrix vectors(system.size(), n);
@@ -243,8 +245,8 @@ std::vector<Pair> sort_small(const SymmetricSystem& system, Parts& parts) {
   const Matrix shapes = inverse_root.asDiagonal() * vectors;
   const Matrix stiffness = shapes.transpose() * (system.matrix() * shapes);
   const Eigen::SelfAdjointEigenSolver<Matrix> solver((stiffness + stiffness.transpose()) / 2);
-  std::vector<Pair> rounding;
-  std::vector<Pair> soft;
+  std::vector<EigenPair> rounding;
+  std::vector<EigenPair> soft;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vector part = solver.eigenvectors().col(i), shape = shapes * part;
     const double value = solver.eigenvalues()[i];
@@ -269,7 +271,7 @@ VibrationModes vibration_modes(const Tangent& tangent, const ModalSystem& of, in
   if (system.size() == 0) return result;
   if (!std::isfinite(system.bound())) throw NoModes("the stiffness matrix is not finite");
   Parts parts = is_dense(system.size(), count) ? dense_parts(system) : sparse_parts(system, count);
-  std::vector<Pair> zero;
+  std::vector<EigenPair> zero;
   if (parts.within <= kMostRigidShapes) zero = aligned(system, of, sort_small(system, parts));
   result.unstable = parts.below;
   result.rigid = parts.within;
@@ -279,7 +281,7 @@ VibrationModes vibration_modes(const Tangent& tangent, const ModalSystem& of, in
   const Vector inverse_root = system.mass().cwiseSqrt().cwiseInverse();
   for (const auto* part :
        {&std::as_const(parts.negative), &std::as_const(zero), &std::as_const(parts.positive)}) {
-    for (const Pair& p : *part) {
+    for (const EigenPair& p : *part) {
       result.modes.push_back(
           {part == &zero ? 0 : p.value, system.shape(inverse_root.cwiseProduct(p.vector))});
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 
@@ -37,9 +36,9 @@ Decimal parse_digits(std::string_view word) {
     digits.erase(point, 1);
   }
   if (digits[0] == '+') digits.erase(0, 1);
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), result.digits);
-  if (error != std::errc()) refuse_digits(word);
+  const auto whole = find_integer<std::int64_t>(digits);
+  if (!whole) refuse_digits(word);
+  result.digits = *whole;
   while (result.digits != 0 && result.digits % 10 == 0) {
     result.digits /= 10;
     ++result.exponent;

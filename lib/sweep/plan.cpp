@@ -104,6 +104,35 @@ void refuse_repeated_rows(const VariationTable& table, const std::vector<int>& l
   }
 }
 
+void refuse_repeated_paths(const std::vector<std::string>& paths) {
+  std::set<std::string> known;
+  for (const std::string& path : paths) {
+    if (!known.insert(path).second) {
+      throw SceneError("--vary",
+                       fmt::format("\"{}\" is varied twice; give all its values at once", path));
+    }
+  }
+}
+
+// The values of each run: every row of the table with every value of each variation.
+std::vector<std::vector<std::string>> all_combinations(const VariationTable& table,
+                                                       const std::vector<Variation>& variations) {
+  std::vector<std::vector<std::string>> combinations = table.rows;
+  if (combinations.empty()) combinations.emplace_back();
+  for (const Variation& v : variations) {
+    std::vector<std::vector<std::string>> longer;
+    longer.reserve(combinations.size() * v.values.size());
+    for (const std::vector<std::string>& values : combinations) {
+      for (const std::string& value : v.values) {
+        longer.push_back(values);
+        longer.back().push_back(value);
+      }
+    }
+    combinations = std::move(longer);
+  }
+  return combinations;
+}
+
 }  // namespace
 
 Variation parse_variation(const std::string& text, const std::string& where) {
@@ -200,27 +229,9 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
   std::vector<std::string> all = table.paths;
   all.insert(all.end(), plan.paths.begin() + static_cast<std::ptrdiff_t>(labelled),
              plan.paths.end());
-  std::set<std::string> known;
-  for (const std::string& path : all) {
-    if (!known.insert(path).second) {
-      throw SceneError("--vary",
-                       fmt::format("\"{}\" is varied twice; give all its values at once", path));
-    }
-  }
+  refuse_repeated_paths(all);
   const std::vector<std::string> names = short_names(plan.paths);
-  std::vector<std::vector<std::string>> combinations = table.rows;
-  if (combinations.empty()) combinations.emplace_back();
-  for (const Variation& v : variations) {
-    std::vector<std::vector<std::string>> longer;
-    longer.reserve(combinations.size() * v.values.size());
-    for (const std::vector<std::string>& values : combinations) {
-      for (const std::string& value : v.values) {
-        longer.push_back(values);
-        longer.back().push_back(value);
-      }
-    }
-    combinations = std::move(longer);
-  }
+  const std::vector<std::vector<std::string>> combinations = all_combinations(table, variations);
   plan.runs.reserve(combinations.size());
   std::set<std::string> keys;
   for (const std::vector<std::string>& values : combinations) {

@@ -215,7 +215,7 @@ std::string Study::message_of(const PlannedRun& run) const {
   return note["ended"].value("message", "");
 }
 
-void Study::begin(const PlannedRun& run, bool resume) const {
+void Study::begin_run(const PlannedRun& run, bool resume) const {
   const std::string folder = folder_of(run);
   create_folder(folder);
   take_away(folder + "/run.json");
@@ -223,7 +223,7 @@ void Study::begin(const PlannedRun& run, bool resume) const {
   write_file(folder + kNote, Json{{"identity", identity_of(run)}}.dump(2) + "\n");
 }
 
-void Study::end(const PlannedRun& run, const RunEnding& ending) const {
+void Study::end_run(const PlannedRun& run, const RunEnding& ending) const {
   Json note{{"identity", identity_of(run)}};
   Json& ended = note["ended"];
   ended["exit_code"] = ending.exit_code;

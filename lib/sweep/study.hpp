@@ -65,9 +65,9 @@ class Study {
 
   /// Notes that work on a run begins. Takes away what says that it has ended, and, unless it goes
   /// on from its checkpoint, that as well. Throws SystemFailure.
-  void begin(const PlannedRun& run, bool resume) const;
+  void begin_run(const PlannedRun& run, bool resume) const;
   /// Notes how it has ended. Throws SystemFailure.
-  void end(const PlannedRun& run, const RunEnding& ending) const;
+  void end_run(const PlannedRun& run, const RunEnding& ending) const;
 
  private:
   [[nodiscard]] std::string identity_of(const PlannedRun& run) const;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -47,12 +46,9 @@ double parse_decimal(std::string_view word) {
 }
 
 int parse_count(std::string_view word) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 0) {
-    throw BadNumber(quoted(word) + " is not a whole number");
-  }
-  return value;
+  const std::optional<int> value = find_integer<int>(word);
+  if (!value || *value < 0) throw BadNumber(quoted(word) + " is not a whole number");
+  return *value;
 }
 
 std::optional<double> find_decimal(std::string_view word) {

@@ -2,6 +2,7 @@
 // command line. All of them are read here, so that a word is a number everywhere or nowhere.
 #pragma once
 
+#include <charconv>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -18,6 +19,15 @@ class BadNumber : public std::invalid_argument {
 /// exponent if need be. Hexadecimal numbers, infinity and NaN are no numbers here. A value too
 /// small for double precision becomes 0. Throws BadNumber.
 double parse_decimal(std::string_view word);
+
+/// The whole number that a whole word holds, or nothing if `Integer` cannot hold it.
+template <class Integer>
+std::optional<Integer> find_integer(std::string_view word) {
+  Integer value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return {};
+  return value;
+}
 
 /// The whole number, 0 or more, that a whole word holds. Throws BadNumber.
 int parse_count(std::string_view word);

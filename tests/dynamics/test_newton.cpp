@@ -174,7 +174,7 @@ TEST_CASE("the tangent of contact is the derivative of its forces", "[newton]") 
     State start = state;
     ContactTerm contact(model, dofs, state, 1);
     std::vector<double> slip(state.x.size()), lambda(model.bodies.size());
-    Stopwatch clock;
+    PhaseTimer clock;
     const auto force = [&]() {
       std::ranges::fill(state.f, 0.);
       for (size_t c = 0; c < slip.size(); ++c) slip[c] = state.x[c] - start.x[c];

@@ -96,13 +96,15 @@ bool ElementKernel::outer(SurfaceIndex i, int edge) const {
   return surfaces_.is_rigid(i) || surfaces_.elements().outer(i - surfaces_.rigid_count(), edge);
 }
 
-void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const {
+// Calls f(from, to) for the edges of a polygon or element that are on the boundary of the body.
+template <class F>
+void ElementKernel::each_outer_edge(SurfaceIndex i, const F& f) const {
   const PlacedPotential view = surfaces_.shapes().view(i);
   const Vec2 place = surfaces_.reference(i);
   for (int k = 0; k < view.size; ++k) {
     if (!outer(i, k)) continue;
     const int end = view.end(k);
-    boundary.add(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[end], view.y[end]));
+    f(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[end], view.y[end]));
   }
 }
 
@@ -122,11 +124,14 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
     }
     return most;
   };
+  const auto add_boundary = [&](SurfaceIndex i) {
+    each_outer_edge(i, [&](const Vec2& from, const Vec2& to) { work.boundary.add(from, to); });
+  };
   double most = floor;
   for (const bool of_a : {true, false}) {
     const SurfaceIndex other = of_a ? b : a;
     work.boundary.clear();
-    add_boundary(other, work.boundary);
+    add_boundary(other);
     if (surfaces_.is_rigid(other)) {
       most = std::max(most, deepest(of_a));
       continue;
@@ -134,7 +139,7 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
     if (!work.boundary.empty() && !(deepest(of_a) > floor)) continue;
     work.boundary.clear();
     for (SurfaceIndex i = surfaces_.rigid_count(); i < surfaces_.size(); ++i) {
-      if (surfaces_.body(i) == surfaces_.body(other)) add_boundary(i, work.boundary);
+      if (surfaces_.body(i) == surfaces_.body(other)) add_boundary(i);
     }
     most = std::max(most, deepest(of_a));
   }
@@ -360,19 +365,9 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-// The steepest slope of each body's potentials, 1/m.
-std::vector<double> ElementKernel::slopes() const {
-  std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
-  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
-    double& own = slope[surfaces_.body(i)];
-    own = std::max(own, surfaces_.shapes().slope(i));
-  }
-  return slope;
-}
-
 double ElementKernel::rate(std::span<const double> node_mass) const {
   const auto bodies = static_cast<size_t>(surfaces_.body_count());
-  const std::vector<double> slope = slopes();
+  const std::vector<double> slope = surfaces_.slopes();
   std::vector<double> other(bodies);  // steepest slope among the other bodies
   for (size_t a = 0; a < bodies; ++a) {
     for (size_t b = 0; b < bodies; ++b) {
@@ -395,16 +390,9 @@ void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   std::vector<size_t> first;  // first record of each surface
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
     first.push_back(records.size());
-    const PlacedPotential view = surfaces_.shapes().view(i);
-    const Vec2 place = surfaces_.reference(i);
-    for (int k = 0; k < view.size; ++k) {
-      if (!surfaces_.is_rigid(i) && !surfaces_.elements().outer(i - surfaces_.rigid_count(), k)) {
-        continue;
-      }
-      const int end = view.end(k);
-      records.push_back({surfaces_.body(i), place + Vec2(view.x[k], view.y[k]),
-                         place + Vec2(view.x[end], view.y[end])});
-    }
+    each_outer_edge(i, [&](const Vec2& from, const Vec2& to) {
+      records.push_back({surfaces_.body(i), from, to});
+    });
   }
   first.push_back(records.size());
   if (records.size() == begin) return;

@@ -53,7 +53,6 @@ class ElementKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
-  [[nodiscard]] std::vector<double> slopes() const;
   /// Two polygons that touch.
   struct Touch {
     SurfaceIndex a, b;
@@ -107,7 +106,8 @@ class ElementKernel final : public Kernel {
     BoundaryDistance boundary;
   };
   [[nodiscard]] bool outer(SurfaceIndex i, int edge) const;
-  void add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const;
+  template <class F>
+  void each_outer_edge(SurfaceIndex i, const F& f) const;
   double find_penetration(SurfaceIndex a, SurfaceIndex b, double floor, Depths& work) const;
   [[nodiscard]] double power(const Forces& forces, const Kinematics& now) const;
   [[nodiscard]] static bool has_direction(const Touch& touch) {

@@ -91,6 +91,15 @@ class EdgeFaceBlocks {
     return std::span(groups_).subspan(static_cast<size_t>(unit.first_group),
                                       static_cast<size_t>(unit.end_group - unit.first_group));
   }
+  /// Calls f(unit, group, i) for the groups of all units in their order; i is the index of a group.
+  template <class F>
+  void each_group(const F& f) const {
+    for (const EdgeFaceUnit& unit : units_) {
+      for (auto i = static_cast<size_t>(unit.first_group); i < static_cast<size_t>(unit.end_group);
+           ++i)
+        f(unit, groups_[i], i);
+    }
+  }
   [[nodiscard]] size_t group_count() const { return groups_.size(); }
   /// Each law belongs to one unit.
   [[nodiscard]] std::span<const EdgeFaceLaw> laws() const { return laws_; }

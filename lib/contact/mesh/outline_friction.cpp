@@ -107,18 +107,15 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
 
 // Looks up the springs of the step before.
 void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> walk) {
-  for (const EdgeFaceUnit& unit : step.blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-      if (!(contact.normal > 0)) continue;
-      const std::span<const Spring> before = walk.find(key_of(groups[g]));
-      if (before.empty()) continue;
-      contact.is_old = true;
-      contact.force_before = before[0].force, contact.stiffness_before = before[0].stiffness;
-      contact.push_before = before[0].push;
-    }
-  }
+  step.blocks.each_group([&](const EdgeFaceUnit&, const EdgeFaceGroup& group, size_t i) {
+    SpringContact& contact = contacts_[i];
+    if (!(contact.normal > 0)) return;
+    const std::span<const Spring> before = walk.find(key_of(group));
+    if (before.empty()) return;
+    contact.is_old = true;
+    contact.force_before = before[0].force, contact.stiffness_before = before[0].stiffness;
+    contact.push_before = before[0].push;
+  });
 }
 
 // The part of the slip of a step that the spring of a contact follows.
@@ -274,27 +271,24 @@ double OutlineFriction::update_friction(const EdgeFaceBlocks& blocks, const Kine
 void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now) {
   const OutlineSurfaces& o = outlines_;
   for (PairSum& pair : pairs_) pair = {};
-  for (const EdgeFaceUnit& unit : blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-      if (!(contact.normal > 0)) continue;
-      PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[groups[g].law].pair)];
-      const BodyIndex own = o.body[contact.edge];
-      std::tie(pair.a, pair.b) = std::minmax(own, contact.other);
-      const Vec2 start = o.point(contact.edge);
-      const Vec2 place =
-          start + contact.place / contact.normal * (o.point(o.next[contact.edge]) - start);
-      const Vec2 force =
-          (own == pair.a ? contact.pressed : -contact.pressed) * Vec2(contact.nx, contact.ny);
-      pair.force += force;
-      pair.moment += cross(place, force);
-      pair.places += contact.pressed * place;
-      pair.sizes += contact.pressed;
-      pair.resistance += contact.resistance;
-      pair.stiffness += contact.stiffness;
-    }
-  }
+  blocks.each_group([&](const EdgeFaceUnit&, const EdgeFaceGroup& group, size_t i) {
+    const SpringContact& contact = contacts_[i];
+    if (!(contact.normal > 0)) return;
+    PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[group.law].pair)];
+    const BodyIndex own = o.body[contact.edge];
+    std::tie(pair.a, pair.b) = std::minmax(own, contact.other);
+    const Vec2 start = o.point(contact.edge);
+    const Vec2 place =
+        start + contact.place / contact.normal * (o.point(o.next[contact.edge]) - start);
+    const Vec2 force =
+        (own == pair.a ? contact.pressed : -contact.pressed) * Vec2(contact.nx, contact.ny);
+    pair.force += force;
+    pair.moment += cross(place, force);
+    pair.places += contact.pressed * place;
+    pair.sizes += contact.pressed;
+    pair.resistance += contact.resistance;
+    pair.stiffness += contact.stiffness;
+  });
   for (PairSum& pair : pairs_) {
     const double size = pair.force.norm();
     if (pair.a < 0 || !(size > 0)) continue;
@@ -318,14 +312,10 @@ void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics&
 // Calls f(unit, group, law, contact) for the contacts with dashpots, in their order.
 template <class F>
 void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
-  for (const EdgeFaceUnit& unit : blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-      const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
-      if (law.damped() && contact.resistance > 0) f(unit, groups[g], law, contact);
-    }
-  }
+  blocks.each_group([&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, size_t i) {
+    const PairLaw& law = *blocks.laws()[static_cast<size_t>(group.law)].law;
+    if (law.damped() && contacts_[i].resistance > 0) f(unit, group, law, contacts_[i]);
+  });
 }
 
 void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now,
@@ -394,20 +384,17 @@ void OutlineFriction::add_tangent(const EdgeFaceBlocks& blocks, size_t first_nod
 void OutlineFriction::add_sticking_tangent(const EdgeFaceBlocks& blocks, size_t first_node,
                                            Tangent& tangent) const {
   CoordinateSum along;
-  for (const EdgeFaceUnit& unit : blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-      const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
-      if (!law.rough() || !(contact.normal > 0)) continue;
-      along.clear();
-      each_coordinate(blocks, unit, groups[g], contact,
-                      [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {
-                        along.add(coordinates_of(outlines_, first_node, vertex), tangential);
-                      });
-      along.add_square(contact.followed, tangent);
-    }
-  }
+  blocks.each_group([&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, size_t i) {
+    const SpringContact& contact = contacts_[i];
+    const PairLaw& law = *blocks.laws()[static_cast<size_t>(group.law)].law;
+    if (!law.rough() || !(contact.normal > 0)) return;
+    along.clear();
+    each_coordinate(blocks, unit, group, contact,
+                    [&](std::int32_t vertex, const Vec2&, const Vec2& tangential) {
+                      along.add(coordinates_of(outlines_, first_node, vertex), tangential);
+                    });
+    along.add_square(contact.followed, tangent);
+  });
 }
 
 void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots,
@@ -428,20 +415,17 @@ void OutlineFriction::add_to(const EdgeFaceBlocks& blocks,
                              std::span<EdgeFaceContact> contacts) const {
   if (contacts_.size() < blocks.group_count() || slips_.size() < blocks.blocks().size()) return;
   auto next = contacts.begin();
-  for (const EdgeFaceUnit& unit : blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
-      const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
-      blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
-        EdgeFaceContact& result = *next++;
-        if (!(contact.normal > 0)) return;
-        const double fraction = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
-        result.drag = fraction * (contact.friction + contact.drag) * t;
-        result.push = fraction * contact.push * n;
-      });
-    }
-  }
+  blocks.each_group([&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, size_t g) {
+    const SpringContact& contact = contacts_[g];
+    const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
+    blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
+      EdgeFaceContact& result = *next++;
+      if (!(contact.normal > 0)) return;
+      const double fraction = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
+      result.drag = fraction * (contact.friction + contact.drag) * t;
+      result.push = fraction * contact.push * n;
+    });
+  });
 }
 
 }  // namespace apothem

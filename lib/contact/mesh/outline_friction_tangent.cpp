@@ -58,17 +58,12 @@ class FrictionTangent {
     const EdgeFaceBlocks& blocks = tried_.blocks;
     springs_.resize(blocks.group_count());
     values_.resize(springs_.size()), sums_.resize(springs_.size());
-    for (const EdgeFaceUnit& unit : blocks.units()) {
-      const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-      for (size_t g = 0; g < groups.size(); ++g)
-        find_sums(unit, groups[g], static_cast<size_t>(unit.first_group) + g);
-    }
+    blocks.each_group([&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, size_t i) {
+      find_sums(unit, group, i);
+    });
     normals_.find(springs_);
-    for (const EdgeFaceUnit& unit : blocks.units()) {
-      const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
-      for (size_t g = 0; g < groups.size(); ++g)
-        find_force(groups[g], static_cast<size_t>(unit.first_group) + g);
-    }
+    blocks.each_group(
+        [&](const EdgeFaceUnit&, const EdgeFaceGroup& group, size_t i) { find_force(group, i); });
     for (size_t first = 0, end = 0; first < slips_.size(); first = end) {
       while (end < slips_.size() && slips_[end].spring == slips_[first].spring) ++end;
       add_spring(std::span(slips_).subspan(first, end - first));

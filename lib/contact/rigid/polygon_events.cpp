@@ -212,10 +212,7 @@ void PolygonEvents::find_crossings(const PlacedPotential& x0, const PlacedPotent
   for (int i = 0; i < x1.size; ++i) {
     const Vec2 p0(x0.x[i] + offset0.x(), x0.y[i] + offset0.y());
     const Vec2 p1(x1.x[i] + offset1.x(), x1.y[i] + offset1.y());
-    Box path;
-    path.include(p0.x(), p0.y());
-    path.include(p1.x(), p1.y());
-    if (apart(path, all)) continue;
+    if (apart(box_of(p0, p1), all)) continue;
     for (int j = 0; j < y1.size; ++j) {
       const double h0 = y0.gx[j] * (p0.x() - y0.x[j]) + y0.gy[j] * (p0.y() - y0.y[j]);
       const double h1 = y1.gx[j] * (p1.x() - y1.x[j]) + y1.gy[j] * (p1.y() - y1.y[j]);

@@ -34,7 +34,7 @@ void ElementSurfaces::add(const Mesh& mesh, const Boundary& boundary, NodeIndex 
     for (size_t k = 0; k < ring.size(); ++k) {
       nodes_.push_back(first_node + ring[k]);
       start_.push_back(mesh.nodes[ring[k]]);
-      outer_.push_back(edges.contains({ring[k], ring[(k + 1) % ring.size()]}));
+      outer_.push_back(edges.contains({ring[k], after(ring, k)}));
     }
     const Polygon polygon({start_.begin() + static_cast<ptrdiff_t>(first), start_.end()});
     if (!polygon.is_convex()) {

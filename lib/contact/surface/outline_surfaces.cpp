@@ -290,9 +290,7 @@ void OutlineSurfaces::find_boxes(double growth) {
   edge_boxes.resize(n), face_boxes.resize(n);
   for (int i = 0; i < n; ++i) {
     const int j = next[i];
-    Box box;
-    box.include(x[i], y[i]);
-    box.include(x[j], y[j]);
+    Box box = box_of(point(i), point(j));
     edge_boxes[i] = box.grown(growth);
     box.include(offset_point(i)), box.include(offset_point(j));
     face_boxes[i] = box.grown(growth);

@@ -70,6 +70,16 @@ double Surfaces::mobility(BodyIndex body, const Kinematics& now, const Vec2& poi
   return mobility_at(mesh.inertia.inverse_mass, point - centre, along);
 }
 
+std::vector<double> Surfaces::slopes() const {
+  std::vector<double> slopes(static_cast<size_t>(body_count_));
+  for (SurfaceIndex i = 0; i < size(); ++i) {
+    double& slope = slopes[bodies_[i]];
+    slope = std::max(
+        slope, kinds_[i] == SurfaceKind::outline ? outlines_.bodies[i].slope() : shapes_.slope(i));
+  }
+  return slopes;
+}
+
 void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {
   absent_ = absent;
   moving_.clear();

@@ -107,6 +107,8 @@ class Surfaces {
   [[nodiscard]] double inradius(SurfaceIndex i) const {
     return is_rigid(i) ? rigid_[static_cast<size_t>(i)].inradius : 1 / shapes_.slope(i);
   }
+  /// The steepest slope of the potentials of each body, 1/m.
+  [[nodiscard]] std::vector<double> slopes() const;
   /// The distance by which the box of a surface is grown for the search, m.
   [[nodiscard]] double growth(SurfaceIndex i) const {
     if (!is_rigid(i)) return mesh_skin_ / 2;

@@ -66,6 +66,10 @@ std::string data_folder(const Folder& folder, const std::string& figure = kFigur
   folder.write("data/reference/empty.csv", "x,y,sxx\n");
   folder.write("data/reference/lost.csv", "x,y,sxx\n0,0,1\n0,nan,1\n");
   folder.write("data/figures/fig-7.json", figure);
+  for (const char* text : {"about.html", "left-out.html"}) {
+    folder.write(std::string("data/figures/") + text,
+                 content(test::kSource + "/data/figures/" + text));
+  }
   return folder / "data";
 }
 

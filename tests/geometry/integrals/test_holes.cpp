@@ -10,6 +10,7 @@
 #include "geometry/potential/point_values.hpp"
 #include "geometry/regions/boolean.hpp"
 #include "tests/geometry/patches.hpp"
+#include "tests/geometry/random_holed.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;

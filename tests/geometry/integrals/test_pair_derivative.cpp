@@ -6,6 +6,7 @@
 
 #include "geometry/integrals/placed_shapes.hpp"
 #include "tests/geometry/patches.hpp"
+#include "tests/geometry/random_holed.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;

@@ -13,7 +13,7 @@ inline constexpr std::array kPhaseNames{"integrate", "elements", "place",
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
 /// Adds the time since the last lap to a part; costs nothing while it is off.
-class Stopwatch {
+class PhaseTimer {
  public:
   void start(bool on) {
     on_ = on;
