@@ -119,33 +119,28 @@ class DistanceOutline {
   /// The vertices at which the outline turns right.
   [[nodiscard]] const std::vector<int>& reflex() const { return reflex_; }
 
-  /// Finds edges and reflex vertices, in ascending order. It leaves out none that are within a
-  /// distance of the segment from p to q. Returns true if these are all there are, as they are
-  /// where there are few.
-  bool find_near(const Point& p, const Point& q, double distance, std::vector<int>& edges,
-                 std::vector<int>& reflex) const {
-    edges.clear(), reflex.clear();
-    const Strip strip(rounded(p), rounded(q), distance);
-    const auto meets = [&](const Box& box) { return strip.meets(box); };
+  [[nodiscard]] bool is_reflex(int v) const { return turn_[v] < 0; }
+
+  /// Whether there are so many edges that to look for those that count takes less time than to look
+  /// at all of them.
+  [[nodiscard]] bool has_many() const { return !trees_.empty(); }
+
+  /// Calls f(edge, box) for edges and the boxes around them, roughly those first that are near the
+  /// segment from p to q, if there are many. It leaves out only those in boxes for which meets(box)
+  /// is false when their turn comes.
+  template <class Meets, class F>
+  void each_near_first(const Point& p, const Point& q, const Meets& meets, const F& f) const {
+    const SegmentDistance distance(rounded(p), rounded(q));
     int first = 0;
-    for (const RingTree& ring : trees_) {
-      ring.each(meets, [&](int e) { edges.push_back(first + e); });
-      first += ring.size();
+    for (const RingTree& tree : trees_) {
+      tree.each_near_first([&](const Box& box) { return distance.least(box); },
+                           [&](const Box& box, double) { return meets(box); },
+                           [&](int e) {
+                             const int i = first + e;
+                             f(i, box_of(rounded(vertex_[i]), rounded(vertex_[after(i)])));
+                           });
+      first += tree.size();
     }
-    if (trees_.empty()) {
-      for (int i = 0; i < n_; ++i) edges.push_back(i);
-    }
-    if (static_cast<int>(edges.size()) == n_) {
-      reflex = reflex_;
-      return true;
-    }
-    for (const int i : edges) {
-      if (turn_[i] < 0) reflex.push_back(i);
-      if (turn_[after(i)] < 0) reflex.push_back(after(i));
-    }
-    std::sort(reflex.begin(), reflex.end());
-    reflex.erase(std::unique(reflex.begin(), reflex.end()), reflex.end());
-    return false;
   }
 
   /// The height of vertex v over the line of edge i, or 0 if the vertex is not in front of it.

@@ -40,7 +40,8 @@ class EdgeTrees {
   void each_near_first(const Vec2& a, const Vec2& b, const Reach& reach, const F& f) const {
     const SegmentDistance distance(a, b);
     for (size_t k = 0; k < trees_.size(); ++k) {
-      trees_[k].each_near_first([&](const Box& box) { return distance.least(box); }, reach,
+      trees_[k].each_near_first([&](const Box& box) { return distance.least(box); },
+                                [&](const Box&, double least) { return !(least > reach()); },
                                 [&](int e) { f(firsts_[k] + e); });
     }
   }

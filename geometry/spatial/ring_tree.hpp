@@ -38,12 +38,12 @@ class RingTree {
   }
 
   /// Calls f(edge) for edges, roughly those first around which there are boxes with a small
-  /// distance(box). It leaves out only those around which there is a box whose distance is larger
-  /// than reach() when its turn comes; reach() may become smaller meanwhile.
-  template <class Distance, class Reach, class F>
-  void each_near_first(const Distance& distance, const Reach& reach, const F& f) const {
+  /// distance(box). It leaves out only those around which there is a box for which
+  /// counts(box, distance) is false when its turn comes; what counts may become less meanwhile.
+  template <class Distance, class Counts, class F>
+  void each_near_first(const Distance& distance, const Counts& counts, const F& f) const {
     if (!ring_.empty()) {
-      each_near_first(distance, reach, f, {0, 0, ring_.size(), distance(boxes_[0])});
+      each_near_first(distance, counts, f, {0, 0, ring_.size(), distance(boxes_[0])});
     }
   }
 
@@ -107,17 +107,17 @@ class RingTree {
     size_t i, first, end;
     double distance;
   };
-  template <class Distance, class Reach, class F>
-  void each_near_first(const Distance& distance, const Reach& reach, const F& f,
+  template <class Distance, class Counts, class F>
+  void each_near_first(const Distance& distance, const Counts& counts, const F& f,
                        const Run& run) const {
-    if (run.distance > reach()) return;
+    if (!counts(boxes_[run.i], run.distance)) return;
     if (run.end - run.first > kRun) {
       const size_t middle = (run.first + run.end) / 2;
       Run near{2 * run.i + 1, run.first, middle, distance(boxes_[2 * run.i + 1])};
       Run far{2 * run.i + 2, middle, run.end, distance(boxes_[2 * run.i + 2])};
       if (far.distance < near.distance) std::swap(near, far);
-      each_near_first(distance, reach, f, near);
-      each_near_first(distance, reach, f, far);
+      each_near_first(distance, counts, f, near);
+      each_near_first(distance, counts, f, far);
       return;
     }
     for (size_t e = run.first; e < run.end; ++e) f(static_cast<int>(e));
