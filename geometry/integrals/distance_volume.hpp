@@ -222,15 +222,26 @@ class DistanceVolume {
     }
   }
 
+  // What features_below() has found.
+  enum class Found { all, too_many, nothing };
   // Calls add(j) for the features that may lie below the ceiling of the present part of a cell,
   // those near the segment from p to q first. add(j) says whether it has changed the ceiling, and
   // circle(k, s) is the circle that touches the cell's own feature and that of piece k of the
-  // ceiling, at the place s. Returns false if the ceiling has got too many pieces meanwhile.
-  template <class Add, class Circle>
-  bool features_below(const Point& p, const Point& q, const Add& add, const Circle& circle) {
+  // ceiling, at the place s. Stops when the ceiling has too many pieces, and when nothing that
+  // counts is below it any more, which counts() says.
+  template <class Add, class Circle, class Counts>
+  Found features_below(const Point& p, const Point& q, const Add& add, const Circle& circle,
+                       const Counts& counts) {
+    Found found = counts() ? Found::all : Found::nothing;
     bool changed = true;
+    int changes = 0, next_look = 1;
     const auto meets = [&](const Box& box) {
-      if (ceiling_.size() > kMostPieces) return false;
+      if (ceiling_.size() > kMostPieces) found = Found::too_many;
+      if (changes >= next_look) {
+        next_look = 2 * changes;
+        if (!counts()) found = Found::nothing;
+      }
+      if (found != Found::all) return false;
       if (changed) {
         circles_.clear();
         for (size_t k = 0; k < ceiling_.size(); ++k) {
@@ -241,9 +252,9 @@ class DistanceVolume {
       return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box); });
     };
     outline_.each_near_first(p, q, meets, [&](int j, const Box& box) {
-      if (meets(box) && add(j)) changed = true;
+      if (meets(box) && add(j)) changed = true, ++changes;
     });
-    return ceiling_.size() <= kMostPieces;
+    return found;
   }
 
   // Lowers highest_ to the largest distance of the ceiling.
@@ -267,22 +278,28 @@ class DistanceVolume {
     return true;
   }
 
-  // Prepares lies_beyond() for the present ceiling.
+  // Whether all of what is at least `distance` away is beyond the ceiling from s0 to s1, whose
+  // piece k is height(k, s) away at s. That is largest at the ends of a piece, and of a part of it.
   template <class Height>
-  void measure_ceiling(const Height& height) {
-    heights_.clear();
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
-      heights_.push_back(ceiling_[k].known ? static_cast<double>(height(k)) : HUGE_VAL);
-    }
-  }
-  // Whether all of what is at least `distance` away is beyond the ceiling from s0 to s1.
-  [[nodiscard]] bool lies_beyond(double distance, double s0, double s1) const {
-    for (size_t k = ceiling_.at(Real(s0)); k < ceiling_.size(); ++k) {
-      if (ceiling_[k].from > s1) break;
-      if (!(distance > kSure * heights_[k] + slack_)) return false;
+  [[nodiscard]] bool lies_beyond(double distance, const Real& s0, const Real& s1,
+                                 const Height& height) const {
+    const auto passes = [&](size_t k, const Real& s) {
+      return distance > kSure * static_cast<double>(height(k, s)) + slack_;
+    };
+    for (size_t k = ceiling_.at(s0); k < ceiling_.size() && !(ceiling_[k].from > s1); ++k) {
+      if (!ceiling_[k].known || !passes(k, std::max(s0, ceiling_[k].from)) ||
+          !passes(k, std::min(s1, ceiling_.end(k)))) {
+        return false;
+      }
     }
     return true;
   }
+
+  // The distances from a cell's own feature at which a box may be; an edge has those behind it,
+  // too.
+  struct Range {
+    double least = -HUGE_VAL, most = HUGE_VAL;
+  };
 
   // Volume over the cell of edge i.
   Real edge_cell(int i) {
@@ -308,7 +325,8 @@ class DistanceVolume {
   Real part_of_edge_cell(int i, const Real& lo, const Real& hi) {
     if (!(lo < hi)) return 0;
     // What is higher is outside the box.
-    const double most = std::min(depth_, ahead(outline_.normal(i), outline_.vertex(i)) + slack_);
+    const double most = std::min(depth_, heights_over_edge(i, lo, hi, around_).most);
+    if (!(most > 0)) return 0;
     ceiling_.reset(lo, hi);
     highest_ = std::numeric_limits<Real>::infinity();
     add_over_edge({lo, {Real(most), 0, 0}, 2 * outline_.size()}, lo, hi, 0);
@@ -317,11 +335,12 @@ class DistanceVolume {
       return (outline_.is_reflex(j) && vertex_over_edge(i, j)) || lower;
     };
     features_beside(i, add);
-    measure_ceiling([&](size_t k) { return height_of_ceiling(k); });
-    if (use_at_edge(i, lo, hi, around_) != RunUse::edges) return 0;
+    const auto circle = [&](size_t k, const Real& tau) { return circle_at_edge(i, k, tau); };
+    const auto counts = [&] { return use_at_edge(i, lo, hi, around_) == RunUse::edges; };
     const Point &p = outline_.vertex(i), &q = outline_.vertex(outline_.after(i));
-    if (!features_below(p, q, add,
-                        [&](size_t k, const Real& tau) { return circle_at_edge(i, k, tau); })) {
+    const Found found = features_below(p, q, add, circle, counts);
+    if (found == Found::nothing) return 0;
+    if (found == Found::too_many) {
       const Real middle = ceiling_[ceiling_.size() / 2].from;
       return part_of_edge_cell(i, lo, middle) + part_of_edge_cell(i, middle, hi);
     }
@@ -366,20 +385,44 @@ class DistanceVolume {
     return {rounded(centre), static_cast<double>(radius), rounded(foot), rounded(other)};
   }
 
+  // The heights over edge i of the part of a box that is between tau = lo and hi.
+  [[nodiscard]] Range heights_over_edge(int i, const Real& lo, const Real& hi,
+                                        const Box& box) const {
+    const Vec2 n = rounded(outline_.normal(i)), start = rounded(outline_.vertex(i));
+    const Vec2 first = start + static_cast<double>(lo) * Vec2(n.y(), -n.x());
+    const Vec2 last = start + static_cast<double>(hi) * Vec2(n.y(), -n.x());
+    Range range;
+    const auto cut = [&](double normal, double from, double to, double low, double high) {
+      const double below = low - slack_ - std::max(from, to);
+      const double above = high + slack_ - std::min(from, to);
+      if (normal == 0) return;
+      range.least = std::max(range.least, (normal > 0 ? below : above) / normal);
+      range.most = std::min(range.most, (normal > 0 ? above : below) / normal);
+    };
+    cut(n.x(), first.x(), last.x(), box.x0, box.x1);
+    cut(n.y(), first.y(), last.y(), box.y0, box.y1);
+    return range;
+  }
+
   // What is to be done with edges in a box, for the part of the cell of edge i from lo to hi.
   [[nodiscard]] RunUse use_at_edge(int i, const Real& lo, const Real& hi, const Box& box) const {
     const Point t = outline_.tangent(i);
-    const Point &n = outline_.normal(i), &start = outline_.vertex(i);
-    const double from = -ahead(t * Real(-1), start, box), to = ahead(t, start, box);
-    if (to < lo - slack_ || from > hi + slack_) return RunUse::none;
-    const bool one = ahead(n, start, box) < -slack_ ||
-                     lies_beyond(-ahead(n * Real(-1), start, box), from - slack_, to + slack_);
+    const Point& start = outline_.vertex(i);
+    const Real from = -ahead(t * Real(-1), start, box) - slack_;
+    const Real to = ahead(t, start, box) + slack_;
+    if (to < lo || from > hi) return RunUse::none;
+    const Real first = std::max(lo, from), last = std::min(hi, to);
+    const Range range = heights_over_edge(i, first, last, box);
+    if (range.most < range.least) return RunUse::none;
+    const bool one =
+        range.most < 0 || lies_beyond(range.least, first, last, [&](size_t k, const Real& tau) {
+          return ceiling_[k].function(tau);
+        });
     return one ? RunUse::whole : RunUse::edges;
   }
 
   // Volume over the part of the cell of edge i from lo to hi, whose ceiling is known.
   Real under_ceiling(int i, const Real& lo, const Real& hi) {
-    measure_ceiling([&](size_t k) { return height_of_ceiling(k); });
     const auto judge = [&](const Box& box) { return use_at_edge(i, lo, hi, box); };
     if (outline_.has_many() && judge(around_) != RunUse::edges) return 0;
     const Point t = outline_.tangent(i);
@@ -470,13 +513,15 @@ class DistanceVolume {
     reaches_.clear();
     // What is behind a line at the far end of the box is outside it.
     Point away = axis_;
-    if (seen_from(corner, around_).nearest > 0) {
+    if (distance_between(corner, around_) > 0) {
       const Point to_middle =
           Point{(around_.x0 + around_.x1) / 2, (around_.y0 + around_.y1) / 2} - corner;
       using std::sqrt;
       away = to_middle * (1 / sqrt(dot(to_middle, to_middle)));
     }
-    const Real most = ahead(away, corner) + slack_;
+    const double most =
+        std::min(ahead(away, corner) + slack_, distances_in(corner, t0, t1, around_).most);
+    if (!(most > 0)) return 0;
     const Point n = in_frame(away);
     reaches_.push_back({false, n, most, 0, 0});
     insert_reach({0, {-n.x / most, -2 * n.y / most, n.x / most}, 0}, t0, t1, 0);
@@ -485,10 +530,11 @@ class DistanceVolume {
       return (outline_.is_reflex(j) && vertex_to_vertex(v, j, t0, t1)) || lower;
     };
     features_beside(v, add);
-    measure_ceiling([&](size_t k) { return reach(k); });
-    if (use_at_vertex(v, t0, t1, around_) != RunUse::edges) return 0;
-    if (!features_below(corner, corner, add,
-                        [&](size_t k, const Real& t) { return circle_at_vertex(v, k, t); })) {
+    const auto circle = [&](size_t k, const Real& t) { return circle_at_vertex(v, k, t); };
+    const auto counts = [&] { return use_at_vertex(v, t0, t1, around_) == RunUse::edges; };
+    const Found found = features_below(corner, corner, add, circle, counts);
+    if (found == Found::nothing) return 0;
+    if (found == Found::too_many) {
       const Real middle = ceiling_[ceiling_.size() / 2].from;
       return part_of_vertex_cell(v, t0, middle) + part_of_vertex_cell(v, middle, t1);
     }
@@ -519,29 +565,57 @@ class DistanceVolume {
     return {rounded(centre), static_cast<double>(radius), rounded(corner), rounded(other)};
   }
 
-  // The directions in which a box is seen from the corner of the present cell, and how far it is
-  // away. It is seen in all of them if it is not clearly ahead.
+  [[nodiscard]] double distance_between(const Point& corner, const Box& box) const {
+    const Vec2 c = rounded(corner);
+    const double x = std::max({0., box.x0 - c.x(), c.x() - box.x1});
+    const double y = std::max({0., box.y0 - c.y(), c.y() - box.y1});
+    return std::max(0., std::sqrt(x * x + y * y) - slack_);
+  }
+
+  // The directions in which a box is seen from the corner of the present cell: all of them if it is
+  // not clearly ahead.
   struct Sight {
-    double from = -HUGE_VAL, to = HUGE_VAL, nearest = 0;
+    double from = -HUGE_VAL, to = HUGE_VAL;
   };
+  static constexpr double kSameDirection = 1e-12;  // more than the round-off of directions
   [[nodiscard]] Sight seen_from(const Point& corner, const Box& box) const {
     const Vec2 c = rounded(corner), axis = rounded(axis_);
+    if (!(distance_between(corner, box) > 0)) return {};
     const Box b = box.grown(slack_);
-    const double x = std::max({0., b.x0 - c.x(), c.x() - b.x1});
-    const double y = std::max({0., b.y0 - c.y(), c.y() - b.y1});
-    Sight sight{.nearest = std::sqrt(x * x + y * y)};
-    if (!(sight.nearest > 0)) return sight;
-    constexpr double kRoundOff = 1e-12;
     double from = HUGE_VAL, to = -HUGE_VAL;
     for (const Vec2& p : {Vec2(b.x0, b.y0), Vec2(b.x1, b.y0), Vec2(b.x0, b.y1), Vec2(b.x1, b.y1)}) {
       const Vec2 arm = p - c;
-      const double ahead_of = axis.dot(arm);
-      if (!(ahead_of > 0)) return sight;
-      const double t = cross(axis, arm) / (ahead_of + arm.norm());
-      from = std::min(from, t - kRoundOff), to = std::max(to, t + kRoundOff);
+      const double in_front = axis.dot(arm);
+      if (!(in_front > 0)) return {};
+      const double t = cross(axis, arm) / (in_front + arm.norm());
+      from = std::min(from, t), to = std::max(to, t);
     }
-    sight.from = from, sight.to = to;
-    return sight;
+    return {from - kSameDirection, to + kSameDirection};
+  }
+
+  // The distances from the corner of the present cell of the part of a box that is seen in the
+  // directions t0 to t1.
+  [[nodiscard]] Range distances_in(const Point& corner, const Real& t0, const Real& t1,
+                                   const Box& box) const {
+    const auto direction = [&](const Real& t) {
+      const Real size = 1 + t * t;
+      return rounded(out_of_frame({(1 - t * t) / size, 2 * t / size}));
+    };
+    const Vec2 first = direction(t0), last = direction(t1), c = rounded(corner);
+    Range range{.least = distance_between(corner, box)};
+    const auto cut = [&](const Vec2& side, double low, double high) {
+      const bool passed = cross(first, side) > 0 && cross(side, last) > 0;
+      const double most = passed ? 1 : std::max(first.dot(side), last.dot(side)) + kSameDirection;
+      const double least = std::min(first.dot(side), last.dot(side)) - kSameDirection;
+      low -= slack_, high += slack_;
+      if (low > 0) range.least = std::max(range.least, most > 0 ? low / most : HUGE_VAL);
+      if (least > 0) range.most = std::min(range.most, high / least);
+    };
+    cut({1, 0}, box.x0 - c.x(), box.x1 - c.x());
+    cut({-1, 0}, c.x() - box.x1, c.x() - box.x0);
+    cut({0, 1}, box.y0 - c.y(), box.y1 - c.y());
+    cut({0, -1}, c.y() - box.y1, c.y() - box.y0);
+    return range;
   }
 
   // What is to be done with edges in a box, for the part of the cell of vertex v from t0 to t1.
@@ -553,14 +627,18 @@ class DistanceVolume {
       return RunUse::none;
     }
     const Sight sight = seen_from(corner, box);
-    if (sight.to < t0 || sight.from > t1) return RunUse::none;
-    const bool beyond = lies_beyond(sight.nearest, sight.from, sight.to);
+    const Real first = std::max(t0, Real(sight.from)), last = std::min(t1, Real(sight.to));
+    if (first > last) return RunUse::none;
+    const Range range = distances_in(corner, first, last, box);
+    if (range.most < range.least) return RunUse::none;
+    const bool beyond = lies_beyond(range.least, first, last, [&](size_t k, const Real& t) {
+      return distance_of_ceiling(k, t);
+    });
     return beyond ? RunUse::whole : RunUse::edges;
   }
 
   // Volume over the part of the cell of vertex v from t0 to t1, whose ceiling is known.
   Real within_reach(int v, const Real& t0, const Real& t1) {
-    measure_ceiling([&](size_t k) { return reach(k); });
     const auto judge = [&](const Box& box) { return use_at_vertex(v, t0, t1, box); };
     if (outline_.has_many() && judge(around_) != RunUse::edges) return 0;
     const Point& corner = outline_.vertex(v);
