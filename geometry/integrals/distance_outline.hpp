@@ -125,20 +125,24 @@ class DistanceOutline {
   /// at all of them.
   [[nodiscard]] bool has_many() const { return !trees_.empty(); }
 
-  /// Calls f(edge, box) for edges and the boxes around them, roughly those first that are near the
-  /// segment from p to q, if there are many. It leaves out only those in boxes for which meets(box)
-  /// is false when their turn comes.
+  /// Calls f(edge, box, slab) for edges and what is around them, roughly those first that are near
+  /// the segment from p to q, if there are many. It leaves out only those in boxes and slabs for
+  /// which meets(box, slab) is false when their turn comes.
   template <class Meets, class F>
   void each_near_first(const Point& p, const Point& q, const Meets& meets, const F& f) const {
     const SegmentDistance distance(rounded(p), rounded(q));
     int first = 0;
     for (const RingTree& tree : trees_) {
-      tree.each_near_first([&](const Box& box) { return distance.least(box); },
-                           [&](const Box& box, double) { return meets(box); },
-                           [&](int e) {
-                             const int i = first + e;
-                             f(i, box_of(rounded(vertex_[i]), rounded(vertex_[after(i)])));
-                           });
+      tree.each_near_first(
+          [&](const Box& box, const Slab& slab) { return distance.least(box, slab); },
+          [&](const Box& box, const Slab& slab, double) { return meets(box, slab); },
+          [&](int e) {
+            const int i = first + e;
+            const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
+            const Vec2 n = rounded(normal_[i]);
+            const double of_a = n.dot(a), of_b = n.dot(b);
+            f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
+          });
       first += tree.size();
     }
   }
@@ -214,6 +218,7 @@ class DistanceOutline {
       std::vector<Vec2> ring;
       for (int i = begin; i < end; ++i) ring.push_back(rounded(vertex_[i]));
       trees_.emplace_back(std::move(ring));
+      trees_.back().add_slabs();
     });
   }
 

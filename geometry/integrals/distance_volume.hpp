@@ -235,7 +235,7 @@ class DistanceVolume {
     Found found = counts() ? Found::all : Found::nothing;
     bool changed = true;
     int changes = 0, next_look = 1;
-    const auto meets = [&](const Box& box) {
+    const auto meets = [&](const Box& box, const Slab& slab) {
       if (ceiling_.size() > kMostPieces) found = Found::too_many;
       if (changes >= next_look) {
         next_look = 2 * changes;
@@ -249,10 +249,10 @@ class DistanceVolume {
         }
         changed = false;
       }
-      return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box); });
+      return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box, slab); });
     };
-    outline_.each_near_first(p, q, meets, [&](int j, const Box& box) {
-      if (meets(box) && add(j)) changed = true, ++changes;
+    outline_.each_near_first(p, q, meets, [&](int j, const Box& box, const Slab& slab) {
+      if (meets(box, slab) && add(j)) changed = true, ++changes;
     });
     return found;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/polygon/point.hpp"
+#include "geometry/spatial/strip.hpp"
 
 namespace apothem {
 
@@ -42,18 +43,20 @@ class TouchingCircles {
     around_.include(between_);
   }
 
-  /// False only if none of the points is in the box.
-  [[nodiscard]] bool meets(const Box& box) const {
+  /// False only if none of the points is both in the box and in the slab.
+  [[nodiscard]] bool meets(const Box& box, const Slab& slab) const {
     if (!is_finite_) return true;
     if (apart(box, around_)) return false;
-    return reaches(circles_[0], box) || reaches(circles_[1], box) || crosses_between(box);
+    return reaches(circles_[0], box, slab) || reaches(circles_[1], box, slab) ||
+           (crosses_between(box) && crosses_between(slab));
   }
 
  private:
-  static bool reaches(const TouchingCircle& circle, const Box& box) {
+  static bool reaches(const TouchingCircle& circle, const Box& box, const Slab& slab) {
     const double x = std::max({0., box.x0 - circle.centre.x(), circle.centre.x() - box.x1});
     const double y = std::max({0., box.y0 - circle.centre.y(), circle.centre.y() - box.y1});
-    return x * x + y * y <= circle.radius * circle.radius;
+    return x * x + y * y <= circle.radius * circle.radius &&
+           slab.distance(circle.centre) <= circle.radius;
   }
 
   // Whether the box meets the quadrilateral: none of its sides separates them.
@@ -74,6 +77,15 @@ class TouchingCircles {
       if (low > reach || high < -reach) return false;
     }
     return true;
+  }
+
+  [[nodiscard]] bool crosses_between(const Slab& slab) const {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Vec2& corner : corners_) {
+      const double across = slab.normal.dot(corner);
+      low = std::min(low, across), high = std::max(high, across);
+    }
+    return low <= slab.high + slack_ && high >= slab.low - slack_;
   }
 
   std::array<TouchingCircle, 2> circles_;
