@@ -511,20 +511,15 @@ class DistanceVolume {
     ceiling_.reset(t0, t1);
     highest_ = std::numeric_limits<Real>::infinity();
     reaches_.clear();
-    // What is behind a line at the far end of the box is outside it.
-    Point away = axis_;
-    if (distance_between(corner, around_) > 0) {
-      const Point to_middle =
-          Point{(around_.x0 + around_.x1) / 2, (around_.y0 + around_.y1) / 2} - corner;
-      using std::sqrt;
-      away = to_middle * (1 / sqrt(dot(to_middle, to_middle)));
-    }
-    const double most =
-        std::min(ahead(away, corner) + slack_, distances_in(corner, t0, t1, around_).most);
-    if (!(most > 0)) return 0;
-    const Point n = in_frame(away);
-    reaches_.push_back({false, n, most, 0, 0});
-    insert_reach({0, {-n.x / most, -2 * n.y / most, n.x / most}, 0}, t0, t1, 0);
+    // What is behind a side of the box is outside it.
+    const auto close = [&](const Point& out) {
+      const double d = ahead(out, corner) + slack_;
+      if (!(d > 0)) return;
+      const Point n = in_frame(out);
+      reaches_.push_back({false, n, d, 0, 0});
+      insert_reach({0, {-n.x / d, -2 * n.y / d, n.x / d}, 0}, t0, t1, 0);
+    };
+    close({1, 0}), close({-1, 0}), close({0, 1}), close({0, -1});
     const auto add = [&](int j) {
       const bool lower = edge_to_vertex(v, j, t0, t1);
       return (outline_.is_reflex(j) && vertex_to_vertex(v, j, t0, t1)) || lower;
