@@ -278,28 +278,28 @@ class DistanceVolume {
     return true;
   }
 
-  // Whether all of what is at least `distance` away is beyond the ceiling from s0 to s1, whose
-  // piece k is height(k, s) away at s. That is largest at the ends of a piece, and of a part of it.
-  template <class Height>
-  [[nodiscard]] bool lies_beyond(double distance, const Real& s0, const Real& s1,
-                                 const Height& height) const {
-    const auto passes = [&](size_t k, const Real& s) {
-      return distance > kSure * static_cast<double>(height(k, s)) + slack_;
-    };
-    for (size_t k = ceiling_.at(s0); k < ceiling_.size() && !(ceiling_[k].from > s1); ++k) {
-      if (!ceiling_[k].known || !passes(k, std::max(s0, ceiling_[k].from)) ||
-          !passes(k, std::min(s1, ceiling_.end(k)))) {
-        return false;
-      }
-    }
-    return true;
-  }
-
   // The distances from a cell's own feature at which a box may be; an edge has those behind it,
-  // too.
+  // too. There are none if the least one is more than the largest one.
   struct Range {
     double least = -HUGE_VAL, most = HUGE_VAL;
   };
+  // Whether a box is beyond the ceiling from s0 to s1, whose piece k is height(k, s) away at s.
+  // That is largest at the ends of a piece, and of a part of it. The box may be at the distances
+  // `all` there, and at range(a, b) from a to b.
+  template <class Height, class RangeIn>
+  [[nodiscard]] bool lies_beyond(const Real& s0, const Real& s1, const Range& all,
+                                 const Height& height, const RangeIn& range) const {
+    for (size_t k = ceiling_.at(s0); k < ceiling_.size() && !(ceiling_[k].from > s1); ++k) {
+      if (!ceiling_[k].known) return false;
+      const Real a = std::max(s0, ceiling_[k].from), b = std::min(s1, ceiling_.end(k));
+      const double high =
+          kSure * static_cast<double>(std::max(Real(height(k, a)), Real(height(k, b)))) + slack_;
+      if (all.least > high) continue;
+      const Range here = range(a, b);
+      if (!(here.least > std::min(high, here.most))) return false;
+    }
+    return true;
+  }
 
   // Volume over the cell of edge i.
   Real edge_cell(int i) {
@@ -412,12 +412,13 @@ class DistanceVolume {
     const Real to = ahead(t, start, box) + slack_;
     if (to < lo || from > hi) return RunUse::none;
     const Real first = std::max(lo, from), last = std::min(hi, to);
-    const Range range = heights_over_edge(i, first, last, box);
-    if (range.most < range.least) return RunUse::none;
-    const bool one =
-        range.most < 0 || lies_beyond(range.least, first, last, [&](size_t k, const Real& tau) {
-          return ceiling_[k].function(tau);
-        });
+    const auto range = [&](const Real& a, const Real& b) {
+      return heights_over_edge(i, a, b, box);
+    };
+    const auto height = [&](size_t k, const Real& tau) { return ceiling_[k].function(tau); };
+    const Range all = range(first, last);
+    if (all.most < all.least) return RunUse::none;
+    const bool one = all.most < 0 || lies_beyond(first, last, all, height, range);
     return one ? RunUse::whole : RunUse::edges;
   }
 
@@ -624,11 +625,13 @@ class DistanceVolume {
     const Sight sight = seen_from(corner, box);
     const Real first = std::max(t0, Real(sight.from)), last = std::min(t1, Real(sight.to));
     if (first > last) return RunUse::none;
-    const Range range = distances_in(corner, first, last, box);
-    if (range.most < range.least) return RunUse::none;
-    const bool beyond = lies_beyond(range.least, first, last, [&](size_t k, const Real& t) {
-      return distance_of_ceiling(k, t);
-    });
+    const auto range = [&](const Real& a, const Real& b) {
+      return distances_in(corner, a, b, box);
+    };
+    const auto height = [&](size_t k, const Real& t) { return distance_of_ceiling(k, t); };
+    const Range all = range(first, last);
+    if (all.most < all.least) return RunUse::none;
+    const bool beyond = lies_beyond(first, last, all, height, range);
     return beyond ? RunUse::whole : RunUse::edges;
   }
 
@@ -855,8 +858,7 @@ class DistanceVolume {
   double slack_ = 0;                      // round-off of positions in boxes, m
   double depth_ = 0;                      // no point that counts is deeper, m
   Real highest_{};                        // no more than this is the ceiling's distance
-  std::vector<double> heights_;           // of the pieces of the ceiling, for lies_beyond()
-  std::vector<TouchingCircles> circles_;  // the same pieces, for features_below()
+  std::vector<TouchingCircles> circles_;  // of the pieces of the ceiling, for features_below()
   std::vector<Real> cuts_;
   PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
   std::vector<Reach> reaches_;                 // borders of the present vertex's cell
