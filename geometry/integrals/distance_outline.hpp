@@ -125,24 +125,22 @@ class DistanceOutline {
   /// at all of them.
   [[nodiscard]] bool has_many() const { return !trees_.empty(); }
 
-  /// Calls f(edge, box, slab) for edges and what is around them, roughly those first that are near
-  /// the segment from p to q, if there are many. It leaves out only those in boxes and slabs for
-  /// which meets(box, slab) is false when their turn comes.
-  template <class Meets, class F>
-  void each_near_first(const Point& p, const Point& q, const Meets& meets, const F& f) const {
-    const SegmentDistance distance(rounded(p), rounded(q));
+  /// Calls f(edge, box, slab) for edges and what is around them, roughly in ascending order of
+  /// measure(box) of each ring, if there are many edges. It leaves out only those in boxes and
+  /// slabs for which meets(box, slab, measure) is false when their turn comes.
+  template <class Measure, class Meets, class F>
+  void each_in_order(const Measure& measure, const Meets& meets, const F& f) {
     int first = 0;
     for (const RingTree& tree : trees_) {
-      tree.each_near_first(
-          [&](const Box& box, const Slab& slab) { return distance.least(box, slab); },
-          [&](const Box& box, const Slab& slab, double) { return meets(box, slab); },
-          [&](int e) {
-            const int i = first + e;
-            const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
-            const Vec2 n = rounded(normal_[i]);
-            const double of_a = n.dot(a), of_b = n.dot(b);
-            f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
-          });
+      tree.each_in_order([&](const Box& box, const Slab&) { return measure(box); }, meets,
+                         [&](int e) {
+                           const int i = first + e;
+                           const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
+                           const Vec2 n = rounded(normal_[i]);
+                           const double of_a = n.dot(a), of_b = n.dot(b);
+                           f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
+                         },
+                         runs_);
       first += tree.size();
     }
   }
@@ -279,7 +277,8 @@ class DistanceOutline {
   std::vector<Real> length_;
   std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
   std::vector<int> reflex_;  // vertices with a right turn
-  std::vector<RingTree> trees_;  // of the edges of each ring, unless they are few
+  std::vector<RingTree> trees_;      // of the edges of each ring, unless they are few
+  std::vector<RingTree::Run> runs_;  // memory of each_in_order()
 };
 
 }  // namespace apothem

@@ -224,24 +224,27 @@ class DistanceVolume {
 
   // What features_below() has found.
   enum class Found { all, too_many, nothing };
-  // Calls add(j) for the features that may lie below the ceiling of the present part of a cell,
-  // those near the segment from p to q first. add(j) says whether it has changed the ceiling, and
-  // circle(k, s) is the circle that touches the cell's own feature and that of piece k of the
-  // ceiling, at the place s. Stops when the ceiling has too many pieces, and when nothing that
-  // counts is below it any more, which counts() says.
-  template <class Add, class Circle, class Counts>
-  Found features_below(const Point& p, const Point& q, const Add& add, const Circle& circle,
+  // Calls add(j) for the features that may lie below the ceiling of the present part of a cell.
+  // add(j) says whether it has changed the ceiling. circle(k, s) is the circle that touches the
+  // cell's own feature and that of piece k of the ceiling, at the place s, and radius(box) at most
+  // that of any such circle that reaches into a box: the smallest circles come first. Stops when
+  // the ceiling has too many pieces, and when nothing that counts is below it any more, which
+  // counts() says.
+  template <class Radius, class Add, class Circle, class Counts>
+  Found features_below(const Radius& radius, const Add& add, const Circle& circle,
                        const Counts& counts) {
     Found found = counts() ? Found::all : Found::nothing;
     bool changed = true;
     int changes = 0, next_look = 1;
-    const auto meets = [&](const Box& box, const Slab& slab) {
+    const auto meets = [&](const Box& box, const Slab& slab, double least) {
       if (ceiling_.size() > kMostPieces) found = Found::too_many;
       if (changes >= next_look) {
         next_look = 2 * changes;
         if (!counts()) found = Found::nothing;
       }
-      if (found != Found::all) return false;
+      if (found != Found::all || least > kSure * static_cast<double>(highest_) + slack_) {
+        return false;
+      }
       if (changed) {
         circles_.clear();
         for (size_t k = 0; k < ceiling_.size(); ++k) {
@@ -251,8 +254,8 @@ class DistanceVolume {
       }
       return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box, slab); });
     };
-    outline_.each_near_first(p, q, meets, [&](int j, const Box& box, const Slab& slab) {
-      if (meets(box, slab) && add(j)) changed = true, ++changes;
+    outline_.each_in_order(radius, meets, [&](int j, const Box& box, const Slab& slab) {
+      if (meets(box, slab, 0) && add(j)) changed = true, ++changes;
     });
     return found;
   }
@@ -337,8 +340,8 @@ class DistanceVolume {
     features_beside(i, add);
     const auto circle = [&](size_t k, const Real& tau) { return circle_at_edge(i, k, tau); };
     const auto counts = [&] { return use_at_edge(i, lo, hi, around_) == RunUse::edges; };
-    const Point &p = outline_.vertex(i), &q = outline_.vertex(outline_.after(i));
-    const Found found = features_below(p, q, add, circle, counts);
+    const auto radius = [&](const Box& box) { return least_radius_at_edge(i, lo, hi, box); };
+    const Found found = features_below(radius, add, circle, counts);
     if (found == Found::nothing) return 0;
     if (found == Found::too_many) {
       const Real middle = ceiling_[ceiling_.size() / 2].from;
@@ -383,6 +386,22 @@ class DistanceVolume {
                         : f.id >= size   ? outline_.vertex(f.id - size)
                                          : centre - outline_.normal(f.id) * radius;
     return {rounded(centre), static_cast<double>(radius), rounded(foot), rounded(other)};
+  }
+
+  // At most the radius of the circles that touch edge i between tau = lo and hi and reach into a
+  // box: a point at the height y and beside these by x is on one with (x^2 + y^2) / (2 y) and not
+  // on a smaller one.
+  [[nodiscard]] double least_radius_at_edge(int i, const Real& lo, const Real& hi,
+                                            const Box& box) const {
+    const Point t = outline_.tangent(i);
+    const Point &n = outline_.normal(i), &start = outline_.vertex(i);
+    const double high = ahead(n, start, box) + slack_;
+    if (!(high > 0)) return HUGE_VAL;
+    const double low = std::max(0., -ahead(n * Real(-1), start, box) - slack_);
+    const double x = std::max({0., -ahead(t * Real(-1), start, box) - static_cast<double>(hi),
+                               static_cast<double>(lo) - ahead(t, start, box)});
+    const double y = std::clamp(x, low, high);
+    return y > 0 ? std::max(0., (x * x + y * y) / (2 * y) - slack_) : 0;
   }
 
   // The heights over edge i of the part of a box that is between tau = lo and hi.
@@ -528,7 +547,8 @@ class DistanceVolume {
     features_beside(v, add);
     const auto circle = [&](size_t k, const Real& t) { return circle_at_vertex(v, k, t); };
     const auto counts = [&] { return use_at_vertex(v, t0, t1, around_) == RunUse::edges; };
-    const Found found = features_below(corner, corner, add, circle, counts);
+    const auto radius = [&](const Box& box) { return least_radius_at_vertex(v, t0, t1, box); };
+    const Found found = features_below(radius, add, circle, counts);
     if (found == Found::nothing) return 0;
     if (found == Found::too_many) {
       const Real middle = ceiling_[ceiling_.size() / 2].from;
@@ -552,9 +572,7 @@ class DistanceVolume {
     const Reach& border = reaches_[ceiling_[k].function.id];
     const Point& corner = outline_.vertex(v);
     const Real radius = distance_of_ceiling(k, t);
-    const Real size = 1 + t * t;
-    const Point direction = out_of_frame({(1 - t * t) / size, 2 * t / size});
-    const Point centre = corner + direction * radius;
+    const Point centre = corner + unit(t) * radius;
     const Point normal = out_of_frame(border.normal);
     const Point other = border.parabola ? centre + normal * radius
                                         : corner + normal * (2 * border.d / dot(normal, normal));
@@ -593,11 +611,7 @@ class DistanceVolume {
   // directions t0 to t1.
   [[nodiscard]] Range distances_in(const Point& corner, const Real& t0, const Real& t1,
                                    const Box& box) const {
-    const auto direction = [&](const Real& t) {
-      const Real size = 1 + t * t;
-      return rounded(out_of_frame({(1 - t * t) / size, 2 * t / size}));
-    };
-    const Vec2 first = direction(t0), last = direction(t1), c = rounded(corner);
+    const Vec2 first = rounded(unit(t0)), last = rounded(unit(t1)), c = rounded(corner);
     Range range{.least = distance_between(corner, box)};
     const auto cut = [&](const Vec2& side, double low, double high) {
       const bool passed = cross(first, side) > 0 && cross(side, last) > 0;
@@ -612,6 +626,24 @@ class DistanceVolume {
     cut({0, 1}, box.y0 - c.y(), box.y1 - c.y());
     cut({0, -1}, c.y() - box.y1, c.y() - box.y0);
     return range;
+  }
+
+  // At most the radius of the circles through vertex v whose centres are seen from there in the
+  // directions t0 to t1, and that reach into a box: the circle with the centre in the direction u
+  // passes through p if its radius is |p|^2 / (2 u . p).
+  [[nodiscard]] double least_radius_at_vertex(int v, const Real& t0, const Real& t1,
+                                              const Box& box) const {
+    const Point& corner = outline_.vertex(v);
+    const Vec2 first = rounded(unit(t0)), last = rounded(unit(t1)), c = rounded(corner);
+    double most = 0;
+    for (const Vec2& p :
+         {Vec2(box.x0, box.y0), Vec2(box.x1, box.y0), Vec2(box.x0, box.y1), Vec2(box.x1, box.y1)}) {
+      const Vec2 arm = p - c;
+      const bool between = cross(first, arm) > 0 && cross(arm, last) > 0;
+      most = std::max(most, between ? arm.norm() : std::max(first.dot(arm), last.dot(arm)));
+    }
+    const double least = distance_between(corner, box);
+    return most > 0 ? std::max(0., least * least / (2 * (most + slack_)) - slack_) : HUGE_VAL;
   }
 
   // What is to be done with edges in a box, for the part of the cell of vertex v from t0 to t1.
@@ -677,6 +709,12 @@ class DistanceVolume {
   [[nodiscard]] Point in_frame(const Point& p) const { return {dot(axis_, p), cross(axis_, p)}; }
   [[nodiscard]] Point out_of_frame(const Point& p) const {
     return {axis_.x * p.x - axis_.y * p.y, axis_.y * p.x + axis_.x * p.y};
+  }
+
+  // The unit vector of a direction.
+  [[nodiscard]] Point unit(const Real& t) const {
+    const Real size = 1 + t * t;
+    return out_of_frame({(1 - t * t) / size, 2 * t / size});
   }
 
   // t = tan(theta/2) for the direction of p.

@@ -56,6 +56,38 @@ class RingTree {
     }
   }
 
+  /// A run of edges and a measure of it.
+  struct Run {
+    size_t i, first, end;
+    double measure;
+  };
+  /// The same in ascending order of measure(box, slab), up to the edges of a run. No run in a part
+  /// of a box and a slab has a smaller measure. `memory` is kept between calls.
+  template <class Measure, class Counts, class F>
+  void each_in_order(const Measure& measure, const Counts& counts, const F& f,
+                     std::vector<Run>& memory) const {
+    const auto behind = [](const Run& a, const Run& b) { return a.measure > b.measure; };
+    memory.clear();
+    const auto push = [&](size_t i, size_t first, size_t end) {
+      memory.push_back({i, first, end, measure(boxes_[i], slabs_[i])});
+      std::ranges::push_heap(memory, behind);
+    };
+    if (!ring_.empty()) push(0, 0, ring_.size());
+    while (!memory.empty()) {
+      std::ranges::pop_heap(memory, behind);
+      const Run run = memory.back();
+      memory.pop_back();
+      if (!counts(boxes_[run.i], slabs_[run.i], run.measure)) continue;
+      if (run.end - run.first > kRun) {
+        const size_t middle = (run.first + run.end) / 2;
+        push(2 * run.i + 1, run.first, middle);
+        push(2 * run.i + 2, middle, run.end);
+      } else {
+        for (size_t e = run.first; e < run.end; ++e) f(static_cast<int>(e));
+      }
+    }
+  }
+
   /// Calls f(from, to) for lines from one point of the ring to another, in ascending order. They
   /// are edges, but judge(box) may say that a run of edges in the box is left out, or that one line
   /// from its first point to its last one does for all of it.
@@ -150,21 +182,16 @@ class RingTree {
     for (size_t e = first; e < end; ++e) f(static_cast<int>(e));
   }
 
-  // A run of edges and the distance of its box.
-  struct Run {
-    size_t i, first, end;
-    double distance;
-  };
   template <class Distance, class Counts, class F>
   void each_near_first(const Distance& distance, const Counts& counts, const F& f,
                        const Run& run) const {
-    if (!counts(boxes_[run.i], slabs_[run.i], run.distance)) return;
+    if (!counts(boxes_[run.i], slabs_[run.i], run.measure)) return;
     if (run.end - run.first > kRun) {
       const size_t middle = (run.first + run.end) / 2;
       const size_t left = 2 * run.i + 1, right = 2 * run.i + 2;
       Run near{left, run.first, middle, distance(boxes_[left], slabs_[left])};
       Run far{right, middle, run.end, distance(boxes_[right], slabs_[right])};
-      if (far.distance < near.distance) std::swap(near, far);
+      if (far.measure < near.measure) std::swap(near, far);
       each_near_first(distance, counts, f, near);
       each_near_first(distance, counts, f, far);
       return;
