@@ -122,8 +122,7 @@ class DistanceTrace {
       if (b.s <= 0 || a.s >= 1 || !(b.s > a.s)) continue;
       const Real s0 = std::max(a.s, Real(0));
       const Real s1 = std::min(b.s, Real(1));
-      trace(field, s0, s1, a.edge, b.edge);
-      add_pieces(moments);
+      integrate_part(field, s0, s1, a.edge, b.edge, moments);
       segment(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
     }
   }
@@ -231,6 +230,24 @@ class DistanceTrace {
     }
   }
 
+  // Adds the integrals between s0 and s1. A part with many pieces is halved, so that each function
+  // is compared with few of them.
+  void integrate_part(const PlacedDistance<Real>& field, const Real& s0, const Real& s1, int first,
+                      int second, SegmentMoments<Real>& moments) {
+    trace(field, s0, s1, first, second);
+    if (!too_many(field)) return add_pieces(moments);
+    const Real middle = envelope_[envelope_.size() / 2].from;
+    integrate_part(field, s0, middle, first, second, moments);
+    integrate_part(field, middle, s1, first, second, moments);
+  }
+
+  // Whether the minimum has so many pieces that it is not worth while to go on. Without trees all
+  // functions are tried anyway.
+  [[nodiscard]] bool too_many(const PlacedDistance<Real>& field) const {
+    constexpr size_t kMost = 32;
+    return field.trees && envelope_.size() > kMost;
+  }
+
   // Finds the minimum over all edges and vertices between s0 and s1. The two edges that the segment
   // crosses come first, because they are probably near; what is farther away than the minimum so
   // far is skipped.
@@ -255,7 +272,7 @@ class DistanceTrace {
     constexpr double kSure = 1 + 1e-9;  // more than one by far more than round-off
     const auto at = [&](double s) { return Vec2(px_ + s * ex_, py_ + s * ey_); };
     field.trees->each_near_first(
-        at(s0), at(s1), [&] { return kSure * bound_ / field.slope; },
+        at(s0), at(s1), [&] { return too_many(field) ? -HUGE_VAL : kSure * bound_ / field.slope; },
         [&](int i) {
           insert_edge(field, i, s0, s1);
           if (std::binary_search(field.corners->begin(), field.corners->end(), i)) {
