@@ -47,6 +47,10 @@ class DistanceOutline {
  public:
   using Point = PlanePoint<Real>;
 
+  /// With so few edges, to look at all of them costs less than to look for those that count.
+  static constexpr int kFew = 32;
+  explicit DistanceOutline(int few) : few_(few) {}
+
   /// The points that are equally far from edge i and from another edge: their height over edge i is
   /// start + rise (tau - origin) for tau between `from` and `to`, where tau is the coordinate along
   /// edge i. There the foot on the other edge lies within it, and the height is positive.
@@ -104,7 +108,7 @@ class DistanceOutline {
       if (turn_[i] < 0) reflex_.push_back(i);
     }
     trees_.clear();
-    if (n_ > kFew) plant_trees();
+    if (n_ > few_) plant_trees();
   }
 
   [[nodiscard]] int size() const { return n_; }
@@ -121,8 +125,7 @@ class DistanceOutline {
 
   [[nodiscard]] bool is_reflex(int v) const { return turn_[v] < 0; }
 
-  /// Whether there are so many edges that to look for those that count takes less time than to look
-  /// at all of them.
+  /// Whether there are more than a few edges.
   [[nodiscard]] bool has_many() const { return !trees_.empty(); }
 
   /// Calls f(edge, box, slab) for edges and what is around them, roughly in ascending order of
@@ -132,15 +135,16 @@ class DistanceOutline {
   void each_in_order(const Measure& measure, const Meets& meets, const F& f) {
     int first = 0;
     for (const RingTree& tree : trees_) {
-      tree.each_in_order([&](const Box& box, const Slab&) { return measure(box); }, meets,
-                         [&](int e) {
-                           const int i = first + e;
-                           const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
-                           const Vec2 n = rounded(normal_[i]);
-                           const double of_a = n.dot(a), of_b = n.dot(b);
-                           f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
-                         },
-                         runs_);
+      tree.each_in_order(
+          measure, meets,
+          [&](int e) {
+            const int i = first + e;
+            const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
+            const Vec2 n = rounded(normal_[i]);
+            const double of_a = n.dot(a), of_b = n.dot(b);
+            f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
+          },
+          runs_);
       first += tree.size();
     }
   }
@@ -205,9 +209,6 @@ class DistanceOutline {
   }
 
  private:
-  // With so few vertices, to look at all of them costs less than to look for those that are near.
-  static constexpr int kFew = 32;
-
   static Vec2 rounded(const Point& p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y)};
   }
@@ -268,6 +269,7 @@ class DistanceOutline {
 
   [[nodiscard]] const RingLinks* links() const { return several_ ? &links_ : nullptr; }
 
+  int few_;
   int n_ = 0;
   bool several_ = false;  // whether there are several rings
   RingLinks links_;       // neighbours, if there are

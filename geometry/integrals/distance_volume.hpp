@@ -49,6 +49,9 @@ struct OverlapBounds {
 template <class Real>
 class DistanceVolume {
  public:
+  /// With at most `few` edges, a polygon is searched without trees; a test may choose that.
+  explicit DistanceVolume(int few = DistanceOutline<Real>::kFew) : few_(few), outline_(few) {}
+
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
   /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
   /// a coordinate is not finite, the result is NaN. Of a polygon of several rings, the sum may be
@@ -83,8 +86,9 @@ class DistanceVolume {
   using Point = PlanePoint<Real>;
   using Quadratic = apothem::Quadratic<Real>;
 
-  // With so few edges, to look at all of them costs less than to look for those that count.
-  static constexpr size_t kFew = 32;
+  static Vec2 rounded(const Point& p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y)};
+  }
 
   // What round-off may do to boxes, and the tree of the ring, if it has many edges.
   void plant_tree(const PlacedDistance<Real>& field) {
@@ -95,11 +99,9 @@ class DistanceVolume {
     }
     slack_ =
         1e-14 * std::max({std::abs(all.x0), std::abs(all.x1), std::abs(all.y0), std::abs(all.y1)});
-    if (ring_.size() <= kFew) return;
+    if (static_cast<int>(ring_.size()) <= few_) return;
     std::vector<Vec2> points;
-    for (const Point& p : ring_) {
-      points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y));
-    }
+    for (const Point& p : ring_) points.push_back(rounded(p));
     tree_.emplace(std::move(points));
   }
 
@@ -165,9 +167,9 @@ class DistanceVolume {
   // The largest value of the dot product of a direction with a point of a box, seen from a point.
   // Where it is negative the box is behind a line.
   static double ahead(const Point& direction, const Point& from, const Box& box) {
-    const auto dx = static_cast<double>(direction.x), dy = static_cast<double>(direction.y);
-    const auto x = static_cast<double>(from.x), y = static_cast<double>(from.y);
-    return dx * ((dx > 0 ? box.x1 : box.x0) - x) + dy * ((dy > 0 ? box.y1 : box.y0) - y);
+    const Vec2 d = rounded(direction), p = rounded(from);
+    return d.x() * ((d.x() > 0 ? box.x1 : box.x0) - p.x()) +
+           d.y() * ((d.y() > 0 ? box.y1 : box.y0) - p.y());
   }
   // The same of the box around what counts.
   [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
@@ -176,19 +178,13 @@ class DistanceVolume {
   // Whether all points around which something counts are farther from a feature, which lies in the
   // box of two points, than they are from the boundary.
   [[nodiscard]] bool too_far(const Point& p, const Point& q) const {
-    const auto vec = [](const Point& r) {
-      return Vec2(static_cast<double>(r.x), static_cast<double>(r.y));
-    };
-    return apart(box_of(vec(p), vec(q)).grown(depth_), around_);
+    return apart(box_of(rounded(p), rounded(q)).grown(depth_), around_);
   }
+
   // The ceiling of a part of a cell with more pieces than this is divided.
   static constexpr size_t kMostPieces = 16;
   // So many features before and behind that of a cell along the outline are tried first.
   static constexpr int kBeside = 3;
-
-  static Vec2 rounded(const Point& p) {
-    return {static_cast<double>(p.x), static_cast<double>(p.y)};
-  }
 
   // Calls f(number) for 0 to count - 1, closed to a ring, beginning at a number: what is near a
   // feature along the outline is often near it in the plane, and leaves little above the ceiling
@@ -257,6 +253,7 @@ class DistanceVolume {
     outline_.each_in_order(radius, meets, [&](int j, const Box& box, const Slab& slab) {
       if (meets(box, slab, 0) && add(j)) changed = true, ++changes;
     });
+    if (found == Found::all && !counts()) found = Found::nothing;
     return found;
   }
 
@@ -444,7 +441,6 @@ class DistanceVolume {
   // Volume over the part of the cell of edge i from lo to hi, whose ceiling is known.
   Real under_ceiling(int i, const Real& lo, const Real& hi) {
     const auto judge = [&](const Box& box) { return use_at_edge(i, lo, hi, box); };
-    if (outline_.has_many() && judge(around_) != RunUse::edges) return 0;
     const Point t = outline_.tangent(i);
     const Point &n = outline_.normal(i), &start = outline_.vertex(i);
     Sums sums;
@@ -670,7 +666,6 @@ class DistanceVolume {
   // Volume over the part of the cell of vertex v from t0 to t1, whose ceiling is known.
   Real within_reach(int v, const Real& t0, const Real& t1) {
     const auto judge = [&](const Box& box) { return use_at_vertex(v, t0, t1, box); };
-    if (outline_.has_many() && judge(around_) != RunUse::edges) return 0;
     const Point& corner = outline_.vertex(v);
     const Point &left = outline_.normal(outline_.before(v)), &right = outline_.normal(v);
     middle_ = t0 < 0 && t1 > 0 ? Real(0) : Real((t0 + t1) / 2);
@@ -887,6 +882,7 @@ class DistanceVolume {
     }
   }
 
+  int few_;
   bool capped_ = false;
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;

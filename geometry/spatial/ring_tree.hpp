@@ -61,15 +61,15 @@ class RingTree {
     size_t i, first, end;
     double measure;
   };
-  /// The same in ascending order of measure(box, slab), up to the edges of a run. No run in a part
-  /// of a box and a slab has a smaller measure. `memory` is kept between calls.
+  /// The same in ascending order of measure(box), up to the edges of a run: a part of a box has no
+  /// smaller measure. `memory` is kept between calls.
   template <class Measure, class Counts, class F>
   void each_in_order(const Measure& measure, const Counts& counts, const F& f,
                      std::vector<Run>& memory) const {
     const auto behind = [](const Run& a, const Run& b) { return a.measure > b.measure; };
     memory.clear();
     const auto push = [&](size_t i, size_t first, size_t end) {
-      memory.push_back({i, first, end, measure(boxes_[i], slabs_[i])});
+      memory.push_back({i, first, end, measure(boxes_[i])});
       std::ranges::push_heap(memory, behind);
     };
     if (!ring_.empty()) push(0, 0, ring_.size());
