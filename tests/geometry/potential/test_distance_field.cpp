@@ -235,14 +235,16 @@ TEST_CASE("trees find all that is near a segment in a long outline", "[distance-
       const SegmentMoments<double> got = integrate(found);
       INFO("polygon " << i << ", segment " << k);
       REQUIRE(found == all);
-      CHECK(std::abs(got.sum - expected.sum) <= 1e-13 * expected.largest);
-      CHECK(std::abs(got.first - expected.first) <= 1e-13 * expected.largest);
-      CHECK(std::abs(got.largest - expected.largest) <= 1e-13 * expected.largest);
+      // A segment along an edge is as deep as the round-off of positions.
+      const double tolerance = 1e-13 * expected.largest + 1e-16 / r;
+      CHECK(std::abs(got.sum - expected.sum) <= tolerance);
+      CHECK(std::abs(got.first - expected.first) <= tolerance);
+      CHECK(std::abs(got.largest - expected.largest) <= tolerance);
       inside += !found.empty(), parts += static_cast<int>(found.size());
     }
   }
   CHECK(inside > test::least(test::scaled(200)));
-  CHECK(parts > test::least(2 * inside));
+  CHECK(parts > test::least(3 * inside / 2));
 }
 
 TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distance-field]") {

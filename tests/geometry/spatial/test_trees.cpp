@@ -155,14 +155,14 @@ TEST_CASE("runs of edges come in the order of their boxes", "[boxes]") {
   test::SeededRandom random(95);
   int narrow = 0;
   for (int round = 0; round < test::scaled(400); ++round) {
-    // Half of them are long and thin teeth, around which slabs are narrow.
-    const int n = random.integer(3, 200);
-    const std::vector<Vec2> ring = round % 2 == 0
-                                       ? random_points(random, n)
-                                       : samples::star(std::max(n / 2, 3), .3).vertices();
+    // Some are long and thin teeth, around which slabs are narrow.
+    const std::vector<Vec2> ring = round % 20 == 0
+                                       ? samples::star(random.integer(300, 600), .3).vertices()
+                                       : random_points(random, random.integer(3, 200));
     RingTree tree(ring);
     tree.add_slabs();
-    const Vec2 p(random.uniform(-1, 5), random.uniform(-1, 5));
+    const Box around = box_of(ring).grown(.5);
+    const Vec2 p(random.uniform(around.x0, around.x1), random.uniform(around.y0, around.y1));
     const double reach = random.uniform(0, 2);
     const SegmentDistance distance(p, p);
     const auto measure = [&](const Box& box) { return distance.least(box); };
