@@ -74,6 +74,7 @@ class DistanceVolume {
     }
     plant_tree(field);
     if (overlap) around_ = overlap->box;
+    empty_.radius = -HUGE_VAL;
     depth_ = overlap ? kSure * overlap->depth + slack_ : std::numeric_limits<double>::infinity();
     Real volume = 0;
     if (outline_.size() < 3) return volume;
@@ -241,20 +242,40 @@ class DistanceVolume {
       if (found != Found::all || least > kSure * static_cast<double>(highest_) + slack_) {
         return false;
       }
-      if (changed) {
-        circles_.clear();
-        for (size_t k = 0; k < ceiling_.size(); ++k) {
-          circles_.emplace_back(circle(k, ceiling_[k].from), circle(k, ceiling_.end(k)), slack_);
-        }
-        changed = false;
-      }
+      if (changed) draw_circles(circle), changed = false;
       return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box, slab); });
     };
     outline_.each_in_order(radius, meets, [&](int j, const Box& box, const Slab& slab) {
       if (meets(box, slab, 0) && add(j)) changed = true, ++changes;
     });
     if (found == Found::all && !counts()) found = Found::nothing;
+    if (found == Found::all) remember_circle(circle);
     return found;
+  }
+
+  // The circles of the pieces of the ceiling. In a round polygon most cells have one in its middle
+  // that touches all features, up to round-off. It is seen to be empty once.
+  template <class Circle>
+  void draw_circles(const Circle& circle) {
+    circles_.clear();
+    const auto draw = [&](size_t k, const Real& s) {
+      TouchingCircle drawn = circle(k, s);
+      drawn.empty = empty_.holds(drawn, slack_);
+      return drawn;
+    };
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      circles_.emplace_back(draw(k, ceiling_[k].from), draw(k, ceiling_.end(k)), slack_);
+    }
+  }
+  // Remembers a circle of a ceiling that is known, if it is larger than the one before.
+  template <class Circle>
+  void remember_circle(const Circle& circle) {
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      for (const Real& s : {ceiling_[k].from, ceiling_.end(k)}) {
+        const TouchingCircle drawn = circle(k, s);
+        if (drawn.radius < HUGE_VAL && drawn.radius > empty_.radius + slack_) empty_ = drawn;
+      }
+    }
   }
 
   // Lowers highest_ to the largest distance of the ceiling.
@@ -893,6 +914,7 @@ class DistanceVolume {
   double depth_ = 0;                      // no point that counts is deeper, m
   Real highest_{};                        // no more than this is the ceiling's distance
   std::vector<TouchingCircles> circles_;  // of the pieces of the ceiling, for features_below()
+  TouchingCircle empty_;                  // the largest circle that is known to be empty
   std::vector<Real> cuts_;
   PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
   std::vector<Reach> reaches_;                 // borders of the present vertex's cell

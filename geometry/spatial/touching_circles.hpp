@@ -13,13 +13,20 @@ namespace apothem {
 /// A circle that touches two features, each of which is a point or a straight line, and where it
 /// touches them.
 struct TouchingCircle {
-  Vec2 centre;
-  double radius;
-  Vec2 one, other;
+  Vec2 centre = Vec2::Zero();
+  double radius = 0;
+  Vec2 one = Vec2::Zero(), other = Vec2::Zero();
+  bool empty = false;  ///< whether nothing is known to be inside it
+
+  /// Whether another circle is in this one, up to a tolerance.
+  [[nodiscard]] bool holds(const TouchingCircle& circle, double tolerance) const {
+    return (circle.centre - centre).norm() + circle.radius <= radius + tolerance;
+  }
 };
 
 /// The points inside all circles that touch the same two features, from the circle `first` to
-/// `last`, and a few more: `slack` is more than the round-off of positions.
+/// `last`, and a few more: `slack` is more than the round-off of positions. What is in a circle
+/// that is known to be empty does not count.
 ///
 /// They are inside one of these two, or in the quadrilateral of the four points where these touch
 /// the features. For another such circle crosses `first` on the line through the middles between
@@ -53,6 +60,7 @@ class TouchingCircles {
 
  private:
   static bool reaches(const TouchingCircle& circle, const Box& box, const Slab& slab) {
+    if (circle.empty) return false;
     const double x = std::max({0., box.x0 - circle.centre.x(), circle.centre.x() - box.x1});
     const double y = std::max({0., box.y0 - circle.centre.y(), circle.centre.y() - box.y1});
     return x * x + y * y <= circle.radius * circle.radius &&
