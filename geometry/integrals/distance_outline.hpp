@@ -19,6 +19,7 @@
 
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/spatial/ring_tree.hpp"
 #include "geometry/spatial/strip.hpp"
@@ -147,6 +148,20 @@ class DistanceOutline {
           runs_);
       first += tree.size();
     }
+  }
+
+  /// The distance of a point from the outline, if there are many edges.
+  [[nodiscard]] double distance(const Vec2& point) {
+    const SegmentDistance to_point(point, point);
+    double nearest = HUGE_VAL;
+    each_in_order([&](const Box& box) { return to_point.least(box); },
+                  [&](const Box&, const Slab&, double least) { return least < nearest; },
+                  [&](int i, const Box&, const Slab&) {
+                    const Vec2 from = rounded(vertex_[i]), to = rounded(vertex_[after(i)]);
+                    const double d2 = nearest_on_segment(point - from, to - from).distance2;
+                    nearest = std::min(nearest, std::sqrt(d2));
+                  });
+    return nearest;
   }
 
   /// The height of vertex v over the line of edge i, or 0 if the vertex is not in front of it.

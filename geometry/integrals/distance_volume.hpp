@@ -267,13 +267,16 @@ class DistanceVolume {
       circles_.emplace_back(draw(k, ceiling_[k].from), draw(k, ceiling_.end(k)), slack_);
     }
   }
-  // Remembers a circle of a ceiling that is known, if it is larger than the one before.
+  // Remembers a circle of a ceiling that is known, if it is larger than the one before. Between the
+  // functions of two features round-off may leave a gap in which nothing has been found, so that
+  // it has to be seen that the circle is empty.
   template <class Circle>
   void remember_circle(const Circle& circle) {
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
-      for (const Real& s : {ceiling_[k].from, ceiling_.end(k)}) {
-        const TouchingCircle drawn = circle(k, s);
-        if (drawn.radius < HUGE_VAL && drawn.radius > empty_.radius + slack_) empty_ = drawn;
+    for (size_t k = 1; k < ceiling_.size(); ++k) {
+      const TouchingCircle drawn = circle(k, ceiling_[k].from);
+      if (drawn.radius > empty_.radius + slack_ &&
+          outline_.distance(drawn.centre) >= drawn.radius - slack_) {
+        empty_ = drawn;
       }
     }
   }
