@@ -34,6 +34,7 @@ inline constexpr std::array kExtras{
     NamedExtra{"failures", ""},
     NamedExtra{"patches", "per pair"},
     NamedExtra{"attempts", ""},
+    NamedExtra{"crossings", "per vertex"},  // of the boundaries of a pair
     NamedExtra{"speedup", ""},
     NamedExtra{"same_bits", ""},
 };

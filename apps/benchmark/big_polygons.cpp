@@ -11,6 +11,7 @@
 #include "geometry/integrals/edge_integral.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/skeleton/singular_area.hpp"
+#include "geometry/spatial/ring_tree.hpp"
 
 namespace apothem {
 namespace {
@@ -36,17 +37,44 @@ Work big_polygon(const Shape& shape, int vertices, double items) {
               }};
 }
 
-// The polygon and its image beside it, which it overlaps.
-Work big_pair(const Shape& shape, int vertices) {
+// How often the boundaries of two polygons without holes cross.
+int count_crossings(const Polygon& a, const Polygon& b) {
+  const RingTree tree(b.vertices());
+  int crossings = 0;
+  for (int i = 0; i < a.size(); ++i) {
+    const Vec2 &p = a[i], &q = a.after(i);
+    const Box box = box_of(p, q);
+    const auto left = [&](const Vec2& v) { return cross(Vec2(q - p), Vec2(v - p)) > 0; };
+    tree.each([&](const Box& run) { return !apart(run, box); },
+              [&](int e) {
+                const Vec2 &r = b[e], &s = b.after(e);
+                const auto beyond = [&](const Vec2& v) {
+                  return cross(Vec2(s - r), Vec2(v - r)) > 0;
+                };
+                crossings += left(r) != left(s) && beyond(p) != beyond(q);
+              });
+  }
+  return crossings;
+}
+
+// The polygon and its image, which it overlaps, moved by a share of the sizes of its box.
+Work big_pair(const Shape& shape, const Vec2& shift, int vertices) {
   const Polygon a = shape(vertices);
   const Box box = bounding_box(a);
-  const Polygon b = samples::shifted(a, {.6 * (box.x1 - box.x0), .013 * (box.y1 - box.y0)});
+  const Polygon b =
+      samples::shifted(a, {shift.x() * (box.x1 - box.x0), shift.y() * (box.y1 - box.y0)});
   const PotentialChoice choice{.field = PotentialChoice::Field::distance};
   const Potential of_a = make_potential(a, choice), of_b = make_potential(b, choice);
-  return {.once = [a, b, of_a, of_b, vertices] {
-    keep(edge_method(a, of_a, b, of_b));
-    return static_cast<double>(vertices);
-  }};
+  return {.once =
+              [a, b, of_a, of_b, vertices] {
+                keep(edge_method(a, of_a, b, of_b));
+                return static_cast<double>(vertices);
+              },
+          .extras =
+              [a, b, vertices] {
+                const double crossings = count_crossings(a, b);
+                return std::vector<Extra>{{"crossings", crossings / vertices}};
+              }};
 }
 
 Shape of_random(Polygon (*shape)(samples::Random& random, int n)) {
@@ -62,30 +90,41 @@ Polygon noisy_circle(samples::Random& random, int n) {
 
 // Outlines of 10 vertices and more, whose times are those of a vertex.
 void add_outlines(std::vector<BenchmarkCase>& cases) {
-  const std::pair<const char*, Shape> shapes[]{
+  // Pairs overlap in about half of their length. Stars cross more often than once per vertex and
+  // are left out where this takes minutes.
+  struct Outline {
+    const char* name;
+    Shape shape;
+    Vec2 shift = {.6, .013};
+    int most = 50000;
+  };
+  const Outline outlines[]{
       {"noisy_circle", of_random(noisy_circle)},
-      {"star", [](int n) { return samples::star(n / 2, .5); }},
+      {.name = "star", .shape = [](int n) { return samples::star(n / 2, .5); }, .most = 10000},
       {"comb", [](int n) { return samples::comb(n / 4, 9); }},
       {"gear", [](int n) { return samples::gear(std::max(n / 4, 3)); }},
-      {"staircase", [](int n) { return samples::staircase(n / 4); }}};
-  for (const auto& [name, shape] : shapes) {
+      {"staircase", [](int n) { return samples::staircase(n / 4); }, {.61, .61}}};
+  for (const Outline& outline : outlines) {
     for (const int n : {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000}) {
       cases.push_back(
-          {.name = fmt::format("outline/{}/{}", name, n),
+          {.name = fmt::format("outline/{}/{}", outline.name, n),
            .item = "vertex",
            .about = "roof, inscribed circle and singular area",
-           .prepare = [shape = shape, n](int) { return big_polygon(shape, n, n); },
+           .prepare = [shape = outline.shape, n](int) { return big_polygon(shape, n, n); },
            // Smaller polygons begin with CGAL, in a process that takes longer than they do.
            .size = n < 100 ? 0. : n,
            .on_request = true,
            .clock = n < 100 ? ClockKind::wall : ClockKind::processor});
     }
-    for (const int n : {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000}) {
-      cases.push_back({.name = fmt::format("outline_pair/{}/{}", name, n),
+    for (const int n : {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000}) {
+      if (n > outline.most) continue;
+      cases.push_back({.name = fmt::format("outline_pair/{}/{}", outline.name, n),
                        .item = "vertex",
                        .about = "force, energy and area of two outlines with distance fields",
-                       .prepare = [shape = shape, n](int) { return big_pair(shape, n); },
-                       .size = static_cast<double>(n),
+                       .prepare = [shape = outline.shape, shift = outline.shift,
+                                   n](int) { return big_pair(shape, shift, n); },
+                       // In smaller ones all features are tried.
+                       .size = n < 100 ? 0. : n,
                        .on_request = true});
     }
   }

@@ -19,6 +19,7 @@
 
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/spatial/ring_tree.hpp"
 #include "geometry/spatial/strip.hpp"
@@ -46,6 +47,10 @@ template <class Real>
 class DistanceOutline {
  public:
   using Point = PlanePoint<Real>;
+
+  /// With so few edges, to look at all of them costs less than to look for those that count.
+  static constexpr int kFew = 32;
+  explicit DistanceOutline(int few) : few_(few) {}
 
   /// The points that are equally far from edge i and from another edge: their height over edge i is
   /// start + rise (tau - origin) for tau between `from` and `to`, where tau is the coordinate along
@@ -104,7 +109,7 @@ class DistanceOutline {
       if (turn_[i] < 0) reflex_.push_back(i);
     }
     trees_.clear();
-    if (n_ > kFew) plant_trees();
+    if (n_ > few_) plant_trees();
   }
 
   [[nodiscard]] int size() const { return n_; }
@@ -119,33 +124,44 @@ class DistanceOutline {
   /// The vertices at which the outline turns right.
   [[nodiscard]] const std::vector<int>& reflex() const { return reflex_; }
 
-  /// Finds edges and reflex vertices, in ascending order. It leaves out none that are within a
-  /// distance of the segment from p to q. Returns true if these are all there are, as they are
-  /// where there are few.
-  bool find_near(const Point& p, const Point& q, double distance, std::vector<int>& edges,
-                 std::vector<int>& reflex) const {
-    edges.clear(), reflex.clear();
-    const Strip strip(rounded(p), rounded(q), distance);
-    const auto meets = [&](const Box& box) { return strip.meets(box); };
+  [[nodiscard]] bool is_reflex(int v) const { return turn_[v] < 0; }
+
+  /// Whether there are more than a few edges.
+  [[nodiscard]] bool has_many() const { return !trees_.empty(); }
+
+  /// Calls f(edge, box, slab) for edges and what is around them, roughly in ascending order of
+  /// measure(box) of each ring, if there are many edges. It leaves out only those in boxes and
+  /// slabs for which meets(box, slab, measure) is false when their turn comes.
+  template <class Measure, class Meets, class F>
+  void each_in_order(const Measure& measure, const Meets& meets, const F& f) {
     int first = 0;
-    for (const RingTree& ring : trees_) {
-      ring.each(meets, [&](int e) { edges.push_back(first + e); });
-      first += ring.size();
+    for (const RingTree& tree : trees_) {
+      tree.each_in_order(
+          measure, meets,
+          [&](int e) {
+            const int i = first + e;
+            const Vec2 a = rounded(vertex_[i]), b = rounded(vertex_[after(i)]);
+            const Vec2 n = rounded(normal_[i]);
+            const double of_a = n.dot(a), of_b = n.dot(b);
+            f(i, box_of(a, b), Slab{n, std::min(of_a, of_b), std::max(of_a, of_b)});
+          },
+          runs_);
+      first += tree.size();
     }
-    if (trees_.empty()) {
-      for (int i = 0; i < n_; ++i) edges.push_back(i);
-    }
-    if (static_cast<int>(edges.size()) == n_) {
-      reflex = reflex_;
-      return true;
-    }
-    for (const int i : edges) {
-      if (turn_[i] < 0) reflex.push_back(i);
-      if (turn_[after(i)] < 0) reflex.push_back(after(i));
-    }
-    std::sort(reflex.begin(), reflex.end());
-    reflex.erase(std::unique(reflex.begin(), reflex.end()), reflex.end());
-    return false;
+  }
+
+  /// The distance of a point from the outline, if there are many edges.
+  [[nodiscard]] double distance(const Vec2& point) {
+    const SegmentDistance to_point(point, point);
+    double nearest = HUGE_VAL;
+    each_in_order([&](const Box& box) { return to_point.least(box); },
+                  [&](const Box&, const Slab&, double least) { return least < nearest; },
+                  [&](int i, const Box&, const Slab&) {
+                    const Vec2 from = rounded(vertex_[i]), to = rounded(vertex_[after(i)]);
+                    const double d2 = nearest_on_segment(point - from, to - from).distance2;
+                    nearest = std::min(nearest, std::sqrt(d2));
+                  });
+    return nearest;
   }
 
   /// The height of vertex v over the line of edge i, or 0 if the vertex is not in front of it.
@@ -208,9 +224,6 @@ class DistanceOutline {
   }
 
  private:
-  // With so few vertices, to look at all of them costs less than to look for those that are near.
-  static constexpr int kFew = 32;
-
   static Vec2 rounded(const Point& p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y)};
   }
@@ -219,6 +232,7 @@ class DistanceOutline {
       std::vector<Vec2> ring;
       for (int i = begin; i < end; ++i) ring.push_back(rounded(vertex_[i]));
       trees_.emplace_back(std::move(ring));
+      trees_.back().add_slabs();
     });
   }
 
@@ -270,6 +284,7 @@ class DistanceOutline {
 
   [[nodiscard]] const RingLinks* links() const { return several_ ? &links_ : nullptr; }
 
+  int few_;
   int n_ = 0;
   bool several_ = false;  // whether there are several rings
   RingLinks links_;       // neighbours, if there are
@@ -279,7 +294,8 @@ class DistanceOutline {
   std::vector<Real> length_;
   std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
   std::vector<int> reflex_;  // vertices with a right turn
-  std::vector<RingTree> trees_;  // of the edges of each ring, unless they are few
+  std::vector<RingTree> trees_;      // of the edges of each ring, unless they are few
+  std::vector<RingTree::Run> runs_;  // memory of each_in_order()
 };
 
 }  // namespace apothem

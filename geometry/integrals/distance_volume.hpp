@@ -8,13 +8,18 @@
 // <= rho <= R(theta) between the normals of its two edges, in polar coordinates rho, theta about
 // the vertex. H is the lower envelope of one quadratic in tau per other feature. 1/R is the upper
 // envelope of such functions; multiplied by 1 + t^2 they are quadratics in t = tan(theta/2). The
-// cells tile the polygon. A circle of radius H that touches an edge reaches no further than 2 H
-// from it, so that only features near an edge bound its cell. The integral is, cell by cell, a
-// signed sum over the edges of the other polygon: each edge contributes the volume between itself
-// and the foot of the cell, clamped to the cell. Edges beside the cell contribute nothing. Of edges
-// in a row that are all behind the cell's far end, or all in front of its foot, the sum is that of
-// one line from the first point to the last one. So a tree of boxes finds the few edges that count
-// one by one.
+// cells tile the polygon.
+//
+// A feature bounds a cell only if it lies inside a circle in the polygon that touches the cell's
+// own one. Of a long outline a tree of boxes finds these features, roughly the nearest first, while
+// the circles shrink. Only the part of a cell counts that may lie in the other polygon, and a cell
+// that many features bound is divided into parts with few of them each.
+//
+// The integral is, cell by cell, a signed sum over the edges of the other polygon: each edge
+// contributes the volume between itself and the foot of the cell, clamped to the cell. Edges beside
+// the cell contribute nothing. Of edges in a row that are all behind the cell's far end, or all in
+// front of its foot, the sum is that of one line from the first point to the last one. So a tree of
+// boxes finds the few edges that count one by one.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +34,7 @@
 #include "geometry/potential/piecewise_minimum.hpp"
 #include "geometry/potential/quadratic.hpp"
 #include "geometry/spatial/ring_tree.hpp"
+#include "geometry/spatial/touching_circles.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -43,6 +49,9 @@ struct OverlapBounds {
 template <class Real>
 class DistanceVolume {
  public:
+  /// With at most `few` edges, a polygon is searched without trees; a test may choose that.
+  explicit DistanceVolume(int few = DistanceOutline<Real>::kFew) : few_(few), outline_(few) {}
+
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
   /// in the frame of the field; minus the integral for a clockwise ring, such as that of a hole. If
   /// a coordinate is not finite, the result is NaN. Of a polygon of several rings, the sum may be
@@ -65,6 +74,7 @@ class DistanceVolume {
     }
     plant_tree(field);
     if (overlap) around_ = overlap->box;
+    empty_.radius = -HUGE_VAL;
     depth_ = overlap ? kSure * overlap->depth + slack_ : std::numeric_limits<double>::infinity();
     Real volume = 0;
     if (outline_.size() < 3) return volume;
@@ -77,8 +87,9 @@ class DistanceVolume {
   using Point = PlanePoint<Real>;
   using Quadratic = apothem::Quadratic<Real>;
 
-  // With so few edges, to look at all of them costs less than to look for those that count.
-  static constexpr size_t kFew = 32;
+  static Vec2 rounded(const Point& p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y)};
+  }
 
   // What round-off may do to boxes, and the tree of the ring, if it has many edges.
   void plant_tree(const PlacedDistance<Real>& field) {
@@ -89,11 +100,9 @@ class DistanceVolume {
     }
     slack_ =
         1e-14 * std::max({std::abs(all.x0), std::abs(all.x1), std::abs(all.y0), std::abs(all.y1)});
-    if (ring_.size() <= kFew) return;
+    if (static_cast<int>(ring_.size()) <= few_) return;
     std::vector<Vec2> points;
-    for (const Point& p : ring_) {
-      points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y));
-    }
+    for (const Point& p : ring_) points.push_back(rounded(p));
     tree_.emplace(std::move(points));
   }
 
@@ -159,9 +168,9 @@ class DistanceVolume {
   // The largest value of the dot product of a direction with a point of a box, seen from a point.
   // Where it is negative the box is behind a line.
   static double ahead(const Point& direction, const Point& from, const Box& box) {
-    const auto dx = static_cast<double>(direction.x), dy = static_cast<double>(direction.y);
-    const auto x = static_cast<double>(from.x), y = static_cast<double>(from.y);
-    return dx * ((dx > 0 ? box.x1 : box.x0) - x) + dy * ((dy > 0 ? box.y1 : box.y0) - y);
+    const Vec2 d = rounded(direction), p = rounded(from);
+    return d.x() * ((d.x() > 0 ? box.x1 : box.x0) - p.x()) +
+           d.y() * ((d.y() > 0 ? box.y1 : box.y0) - p.y());
   }
   // The same of the box around what counts.
   [[nodiscard]] double ahead(const Point& direction, const Point& from) const {
@@ -170,46 +179,105 @@ class DistanceVolume {
   // Whether all points around which something counts are farther from a feature, which lies in the
   // box of two points, than they are from the boundary.
   [[nodiscard]] bool too_far(const Point& p, const Point& q) const {
-    const auto vec = [](const Point& r) {
-      return Vec2(static_cast<double>(r.x), static_cast<double>(r.y));
-    };
-    return apart(box_of(vec(p), vec(q)).grown(depth_), around_);
-  }
-  // Whether a box is beyond the ceiling of a cell, in a direction from a point.
-  [[nodiscard]] bool beyond_ceiling(const Point& direction, const Point& from,
-                                    const Box& box) const {
-    return -ahead(direction * Real(-1), from, box) > kSure * static_cast<double>(highest_) + slack_;
+    return apart(box_of(rounded(p), rounded(q)).grown(depth_), around_);
   }
 
-  // Makes the ceiling of a cell from the features near the segment from p to q. fill() puts those
-  // of near_edges_ and near_reflex_ into it, by add_border(). Distances from the segment that the
-  // ceiling has are at most `height(k)` on its piece k.
-  template <class Fill, class Height>
-  void raise_ceiling(const Point& p, const Point& q, const Real& length, const Fill& fill,
-                     const Height& height) {
-    const auto infinite = std::numeric_limits<double>::infinity();
-    highest_ = std::numeric_limits<Real>::infinity();
-    for (double distance = static_cast<double>(2 * length);;) {
-      const bool all = outline_.find_near(p, q, distance, near_edges_, near_reflex_);
-      fill();
-      lower_highest(height);
-      // What is further than twice the ceiling is behind it.
-      const double far = kSure * 2 * static_cast<double>(highest_);
-      if (all || far <= distance) return;
-      distance = far < infinite ? far : 4 * distance;
+  // The ceiling of a part of a cell with more pieces than this is divided.
+  static constexpr size_t kMostPieces = 16;
+  // So many features before and behind that of a cell along the outline are tried first.
+  static constexpr int kBeside = 3;
+
+  // Calls f(number) for 0 to count - 1, closed to a ring, beginning at a number: what is near a
+  // feature along the outline is often near it in the plane, and leaves little above the ceiling
+  // for what follows.
+  template <class F>
+  static void outwards(size_t count, size_t start, const F& f) {
+    for (size_t k = 0; k < count; ++k) {
+      f((start + (k % 2 == 0 ? k / 2 : count - (k + 1) / 2)) % count);
     }
   }
 
-  // Calls f for all elements of an ascending list, which is closed to a ring, beginning at a
-  // number: what is near it along the outline is often near it in the plane, and leaves little
-  // above the ceiling for what follows.
-  template <class F>
-  static void outwards(const std::vector<int>& list, int number, const F& f) {
-    const size_t count = list.size();
-    const auto start =
-        static_cast<size_t>(std::lower_bound(list.begin(), list.end(), number) - list.begin());
-    for (size_t k = 0; k < count; ++k) {
-      f(list[(start + (k % 2 == 0 ? k / 2 : count - (k + 1) / 2)) % count]);
+  // Calls edge(j) for all edges and vertex(w) for all reflex vertices, those near the number i
+  // first.
+  template <class Edge, class Vertex>
+  void all_features(int i, const Edge& edge, const Vertex& vertex) const {
+    const std::vector<int>& reflex = outline_.reflex();
+    outwards(static_cast<size_t>(outline_.size()), static_cast<size_t>(i),
+             [&](size_t j) { edge(static_cast<int>(j)); });
+    const auto start = std::lower_bound(reflex.begin(), reflex.end(), i) - reflex.begin();
+    outwards(reflex.size(), static_cast<size_t>(start), [&](size_t k) { vertex(reflex[k]); });
+  }
+
+  // Calls add(j) for the features beside that with the number i along the outline: edge j and the
+  // vertex where it begins.
+  template <class Add>
+  void features_beside(int i, const Add& add) const {
+    int before = i, behind = i;
+    for (int k = 0; k < kBeside; ++k) {
+      before = outline_.before(before), behind = outline_.after(behind);
+      add(before), add(behind);
+    }
+  }
+
+  // What features_below() has found.
+  enum class Found { all, too_many, nothing };
+  // Calls add(j) for the features that may lie below the ceiling of the present part of a cell.
+  // add(j) says whether it has changed the ceiling. circle(k, s) is the circle that touches the
+  // cell's own feature and that of piece k of the ceiling, at the place s, and radius(box) at most
+  // that of any such circle that reaches into a box: the smallest circles come first. Stops when
+  // the ceiling has too many pieces, and when nothing that counts is below it any more, which
+  // counts() says.
+  template <class Radius, class Add, class Circle, class Counts>
+  Found features_below(const Radius& radius, const Add& add, const Circle& circle,
+                       const Counts& counts) {
+    Found found = counts() ? Found::all : Found::nothing;
+    bool changed = true;
+    int changes = 0, next_look = 1;
+    const auto meets = [&](const Box& box, const Slab& slab, double least) {
+      if (ceiling_.size() > kMostPieces) found = Found::too_many;
+      if (changes >= next_look) {
+        next_look = 2 * changes;
+        if (!counts()) found = Found::nothing;
+      }
+      if (found != Found::all || least > kSure * static_cast<double>(highest_) + slack_) {
+        return false;
+      }
+      if (changed) draw_circles(circle), changed = false;
+      return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box, slab); });
+    };
+    outline_.each_in_order(radius, meets, [&](int j, const Box& box, const Slab& slab) {
+      if (meets(box, slab, 0) && add(j)) changed = true, ++changes;
+    });
+    if (found == Found::all && !counts()) found = Found::nothing;
+    if (found == Found::all) remember_circle(circle);
+    return found;
+  }
+
+  // The circles of the pieces of the ceiling. In a round polygon most cells have one in its middle
+  // that touches all features, up to round-off. It is seen to be empty once.
+  template <class Circle>
+  void draw_circles(const Circle& circle) {
+    circles_.clear();
+    const auto draw = [&](size_t k, const Real& s) {
+      TouchingCircle drawn = circle(k, s);
+      drawn.empty = empty_.holds(drawn, slack_);
+      return drawn;
+    };
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      circles_.emplace_back(draw(k, ceiling_[k].from), draw(k, ceiling_.end(k)), slack_);
+    }
+  }
+  // Remembers a circle of a ceiling that is known, if it is larger than the one before. Between the
+  // functions of two features round-off may leave a gap in which nothing has been found, so that
+  // it has to be seen that the circle is empty.
+  template <class Circle>
+  void remember_circle(const Circle& circle) {
+    for (size_t k = 1; k < ceiling_.size(); ++k) {
+      const TouchingCircle drawn = circle(k, ceiling_[k].from);
+      if (drawn.radius > empty_.radius + slack_ &&
+          outline_.distance(drawn.centre) >= drawn.radius - slack_) {
+        empty_ = drawn;
+      }
     }
   }
 
@@ -225,10 +293,36 @@ class DistanceVolume {
   }
 
   // Adds a function to the ceiling, unless its distances, which are at least `least`, are above it.
+  // Returns whether it has changed the ceiling.
   template <class Height>
-  void add_border(const Quadratic& f, const Real& from, const Real& to, const Real& least,
+  bool add_border(const Quadratic& f, const Real& from, const Real& to, const Real& least,
                   const Height& height) {
-    if (!(least > kSure * highest_) && ceiling_.insert(f, from, to)) lower_highest(height);
+    if (least > kSure * highest_ || !ceiling_.insert(f, from, to)) return false;
+    lower_highest(height);
+    return true;
+  }
+
+  // The distances from a cell's own feature at which a box may be; an edge has those behind it,
+  // too. There are none if the least one is more than the largest one.
+  struct Range {
+    double least = -HUGE_VAL, most = HUGE_VAL;
+  };
+  // Whether a box is beyond the ceiling from s0 to s1, whose piece k is height(k, s) away at s.
+  // That is largest at the ends of a piece, and of a part of it. The box may be at the distances
+  // `all` there, and at range(a, b) from a to b.
+  template <class Height, class RangeIn>
+  [[nodiscard]] bool lies_beyond(const Real& s0, const Real& s1, const Range& all,
+                                 const Height& height, const RangeIn& range) const {
+    for (size_t k = ceiling_.at(s0); k < ceiling_.size() && !(ceiling_[k].from > s1); ++k) {
+      if (!ceiling_[k].known) return false;
+      const Real a = std::max(s0, ceiling_[k].from), b = std::min(s1, ceiling_.end(k));
+      const double high =
+          kSure * static_cast<double>(std::max(Real(height(k, a)), Real(height(k, b)))) + slack_;
+      if (all.least > high) continue;
+      const Range here = range(a, b);
+      if (!(here.least > std::min(high, here.most))) return false;
+    }
+    return true;
   }
 
   // Volume over the cell of edge i.
@@ -240,40 +334,143 @@ class DistanceVolume {
     const Real& length = outline_.length(i);
     if (too_far(start, stop)) return 0;
     if (ahead(t, start) < 0 || ahead(n, start) < 0 || ahead(t * Real(-1), stop) < 0) return 0;
-    const auto height = [&](size_t k) {
-      const Quadratic& f = ceiling_[k].function;
-      return std::max(f(ceiling_[k].from), f(ceiling_.end(k)));
-    };
-    const auto fill = [&] {
+    if (!outline_.has_many()) {
       ceiling_.reset(0, length);
-      outwards(near_edges_, i, [&](int j) {
-        typename DistanceOutline<Real>::Bisector line;
-        if (j == i || !outline_.bisector(i, j, line)) return;
-        const Quadratic f{line.origin, {line.start, line.rise, 0}, j};
-        add_border(f, line.from, line.to, std::min(f(line.from), f(line.to)), height);
-      });
-      outwards(near_reflex_, i, [&](int v) {
-        if (v == i || v == outline_.after(i)) return;
-        const Real h = outline_.height(i, v);
-        const Real curvature = 1 / (2 * h);
-        if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
-          const Real tau = dot(t, outline_.vertex(v) - start);
-          add_border({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, length, h / 2, height);
-        }
-      });
+      highest_ = std::numeric_limits<Real>::infinity();
+      all_features(
+          i, [&](int j) { edge_over_edge(i, j); }, [&](int v) { vertex_over_edge(i, v); });
+      return under_ceiling(i, 0, length);
+    }
+    const double from = -ahead(t * Real(-1), start) - slack_, to = ahead(t, start) + slack_;
+    return part_of_edge_cell(i, std::max(Real(0), Real(from)), std::min(length, Real(to)));
+  }
+
+  // The same from tau = lo to hi.
+  Real part_of_edge_cell(int i, const Real& lo, const Real& hi) {
+    if (!(lo < hi)) return 0;
+    // What is higher is outside the box.
+    const double most = std::min(depth_, heights_over_edge(i, lo, hi, around_).most);
+    if (!(most > 0)) return 0;
+    ceiling_.reset(lo, hi);
+    highest_ = std::numeric_limits<Real>::infinity();
+    add_over_edge({lo, {Real(most), 0, 0}, 2 * outline_.size()}, lo, hi, 0);
+    const auto add = [&](int j) {
+      const bool lower = edge_over_edge(i, j);
+      return (outline_.is_reflex(j) && vertex_over_edge(i, j)) || lower;
     };
-    raise_ceiling(start, stop, length, fill, height);
+    features_beside(i, add);
+    const auto circle = [&](size_t k, const Real& tau) { return circle_at_edge(i, k, tau); };
+    const auto counts = [&] { return use_at_edge(i, lo, hi, around_) == RunUse::edges; };
+    const auto radius = [&](const Box& box) { return least_radius_at_edge(i, lo, hi, box); };
+    const Found found = features_below(radius, add, circle, counts);
+    if (found == Found::nothing) return 0;
+    if (found == Found::too_many) {
+      const Real middle = ceiling_[ceiling_.size() / 2].from;
+      return part_of_edge_cell(i, lo, middle) + part_of_edge_cell(i, middle, hi);
+    }
+    return under_ceiling(i, lo, hi);
+  }
+
+  // Adds a function to the ceiling over an edge.
+  bool add_over_edge(const Quadratic& f, const Real& from, const Real& to, const Real& least) {
+    return add_border(f, from, to, least, [&](size_t k) { return height_of_ceiling(k); });
+  }
+  // Adds edge j, or the reflex vertex v, to the ceiling over edge i.
+  bool edge_over_edge(int i, int j) {
+    typename DistanceOutline<Real>::Bisector line;
+    if (j == i || !outline_.bisector(i, j, line)) return false;
+    const Quadratic f{line.origin, {line.start, line.rise, 0}, j};
+    return add_over_edge(f, line.from, line.to, std::min(f(line.from), f(line.to)));
+  }
+  bool vertex_over_edge(int i, int v) {
+    if (v == i || v == outline_.after(i)) return false;
+    const Real h = outline_.height(i, v);
+    const Real curvature = 1 / (2 * h);
+    if (!(h > 0 && curvature < std::numeric_limits<Real>::infinity())) return false;
+    const Real tau = dot(outline_.tangent(i), outline_.vertex(v) - outline_.vertex(i));
+    return add_over_edge({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, outline_.length(i),
+                         h / 2);
+  }
+  // The largest height of piece k of the ceiling over an edge, which is at one of its ends.
+  [[nodiscard]] Real height_of_ceiling(size_t k) const {
+    const Quadratic& f = ceiling_[k].function;
+    return std::max(f(ceiling_[k].from), f(ceiling_.end(k)));
+  }
+  [[nodiscard]] TouchingCircle circle_at_edge(int i, size_t k, const Real& tau) const {
+    const Quadratic& f = ceiling_[k].function;
+    const Point& n = outline_.normal(i);
+    const Real radius = std::max(Real(0), f(tau));
+    const Point foot = outline_.vertex(i) + outline_.tangent(i) * tau;
+    const Point centre = foot + n * radius;
+    const int size = outline_.size();
+    const Point other = f.id == 2 * size ? centre + n * radius
+                        : f.id >= size   ? outline_.vertex(f.id - size)
+                                         : centre - outline_.normal(f.id) * radius;
+    return {rounded(centre), static_cast<double>(radius), rounded(foot), rounded(other)};
+  }
+
+  // At most the radius of the circles that touch edge i between tau = lo and hi and reach into a
+  // box: a point at the height y and beside these by x is on one with (x^2 + y^2) / (2 y) and not
+  // on a smaller one.
+  [[nodiscard]] double least_radius_at_edge(int i, const Real& lo, const Real& hi,
+                                            const Box& box) const {
+    const Point t = outline_.tangent(i);
+    const Point &n = outline_.normal(i), &start = outline_.vertex(i);
+    const double high = ahead(n, start, box) + slack_;
+    if (!(high > 0)) return HUGE_VAL;
+    const double low = std::max(0., -ahead(n * Real(-1), start, box) - slack_);
+    const double x = std::max({0., -ahead(t * Real(-1), start, box) - static_cast<double>(hi),
+                               static_cast<double>(lo) - ahead(t, start, box)});
+    const double y = std::clamp(x, low, high);
+    return y > 0 ? std::max(0., (x * x + y * y) / (2 * y) - slack_) : 0;
+  }
+
+  // The heights over edge i of the part of a box that is between tau = lo and hi.
+  [[nodiscard]] Range heights_over_edge(int i, const Real& lo, const Real& hi,
+                                        const Box& box) const {
+    const Vec2 n = rounded(outline_.normal(i)), start = rounded(outline_.vertex(i));
+    const Vec2 first = start + static_cast<double>(lo) * Vec2(n.y(), -n.x());
+    const Vec2 last = start + static_cast<double>(hi) * Vec2(n.y(), -n.x());
+    Range range;
+    const auto cut = [&](double normal, double from, double to, double low, double high) {
+      const double below = low - slack_ - std::max(from, to);
+      const double above = high + slack_ - std::min(from, to);
+      if (normal == 0) return;
+      range.least = std::max(range.least, (normal > 0 ? below : above) / normal);
+      range.most = std::min(range.most, (normal > 0 ? above : below) / normal);
+    };
+    cut(n.x(), first.x(), last.x(), box.x0, box.x1);
+    cut(n.y(), first.y(), last.y(), box.y0, box.y1);
+    return range;
+  }
+
+  // What is to be done with edges in a box, for the part of the cell of edge i from lo to hi.
+  [[nodiscard]] RunUse use_at_edge(int i, const Real& lo, const Real& hi, const Box& box) const {
+    const Point t = outline_.tangent(i);
+    const Point& start = outline_.vertex(i);
+    const Real from = -ahead(t * Real(-1), start, box) - slack_;
+    const Real to = ahead(t, start, box) + slack_;
+    if (to < lo || from > hi) return RunUse::none;
+    const Real first = std::max(lo, from), last = std::min(hi, to);
+    const auto range = [&](const Real& a, const Real& b) {
+      return heights_over_edge(i, a, b, box);
+    };
+    const auto height = [&](size_t k, const Real& tau) { return ceiling_[k].function(tau); };
+    const Range all = range(first, last);
+    if (all.most < all.least) return RunUse::none;
+    const bool one = all.most < 0 || lies_beyond(first, last, all, height, range);
+    return one ? RunUse::whole : RunUse::edges;
+  }
+
+  // Volume over the part of the cell of edge i from lo to hi, whose ceiling is known.
+  Real under_ceiling(int i, const Real& lo, const Real& hi) {
+    const auto judge = [&](const Box& box) { return use_at_edge(i, lo, hi, box); };
+    const Point t = outline_.tangent(i);
+    const Point &n = outline_.normal(i), &start = outline_.vertex(i);
     Sums sums;
-    const auto judge = [&](const Box& box) {
-      if (ahead(t, start, box) < -slack_ || ahead(t * Real(-1), stop, box) < -slack_) {
-        return RunUse::none;
-      }
-      const bool one = ahead(n, start, box) < -slack_ || beyond_ceiling(n, start, box);
-      return one ? RunUse::whole : RunUse::edges;
-    };
     each_line(judge, [&](const Point& from, const Point& to) {
       const Point p = from - start, q = to - start;
-      under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length, sums);
+      under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), lo, hi, sums);
     });
     return sums.low_size <= sums.high_size ? sums.low : sums.high;
   }
@@ -283,17 +480,18 @@ class DistanceVolume {
     return capped_ && h > reference_ ? Real(reference_ * (h - reference_ / 2)) : Real(h * h / 2);
   }
 
-  // Adds the volume between the foot of an edge's cell, of the given length, and a segment.
-  void under_segment(Real tau1, Real h1, Real tau2, Real h2, const Real& length, Sums& sums) {
+  // Adds the volume between the foot of an edge's cell, from `first` to `last`, and a segment.
+  void under_segment(Real tau1, Real h1, Real tau2, Real h2, const Real& first, const Real& last,
+                     Sums& sums) {
     const int sign = tau1 < tau2 ? -1 : 1;
     if (sign > 0) std::swap(tau1, tau2), std::swap(h1, h2);
-    const Real lo = std::max(Real(0), tau1);
-    const Real hi = std::min(length, tau2);
+    const Real lo = std::max(first, tau1);
+    const Real hi = std::min(last, tau2);
     if (!(lo < hi)) return;
     const Real rate = (h2 - h1) / (tau2 - tau1);
     const Quadratic line{tau1, {h1, rate, 0}, 0};
     const auto height = [&](const Real& tau) { return Real(h1 + rate * (tau - tau1)); };
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
+    for (size_t k = ceiling_.at(lo); k < ceiling_.size() && ceiling_[k].from < hi; ++k) {
       const Real from = std::max(lo, ceiling_[k].from);
       const Real to = std::min(hi, ceiling_.end(k));
       if (!(from < to) || !ceiling_[k].known) continue;
@@ -326,40 +524,178 @@ class DistanceVolume {
     const Point& left = outline_.normal(before);
     const Point& right = outline_.normal(v);
     // The cell is between the normals, on the left of one and on the right of the other.
-    const Point past_right{-right.y, right.x}, past_left{left.y, -left.x};
-    if (ahead(past_right, corner) < 0 || ahead(past_left, corner) < 0) return 0;
+    if (ahead({-right.y, right.x}, corner) < 0 || ahead({left.y, -left.x}, corner) < 0) return 0;
     const Point middle =
         dot(left, right) >= 0 ? left + right : outline_.tangent(before) - outline_.tangent(v);
     using std::sqrt;
     axis_ = middle * (1 / sqrt(dot(middle, middle)));
     const Real t0 = half_tangent(in_frame(right));
     const Real t1 = half_tangent(in_frame(left));
-    const auto fill = [&] {
+    if (!outline_.has_many()) {
       ceiling_.reset(t0, t1);
+      highest_ = std::numeric_limits<Real>::infinity();
       reaches_.clear();
-      outwards(near_edges_, v, [&](int j) {
-        if (j != v && j != before) reach_to_edge(v, j, t0, t1);
-      });
-      outwards(near_reflex_, v, [&](int w) {
-        if (w == v) return;
-        // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit
-        // direction.
-        const Point p = in_frame(outline_.vertex(w) - corner);
-        const Real d2 = dot(p, p) / 2;
-        reaches_.push_back({false, p, d2, 0, 0});
-        insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1, sqrt(d2 / 2));
-      });
+      all_features(
+          v, [&](int j) { edge_to_vertex(v, j, t0, t1); },
+          [&](int w) { vertex_to_vertex(v, w, t0, t1); });
+      return within_reach(v, t0, t1);
+    }
+    const Sight sight = seen_from(corner, around_);
+    return part_of_vertex_cell(v, std::max(t0, Real(sight.from)), std::min(t1, Real(sight.to)));
+  }
+
+  // The same from t0 to t1.
+  Real part_of_vertex_cell(int v, const Real& t0, const Real& t1) {
+    if (!(t0 < t1)) return 0;
+    const Point& corner = outline_.vertex(v);
+    ceiling_.reset(t0, t1);
+    highest_ = std::numeric_limits<Real>::infinity();
+    reaches_.clear();
+    // What is behind a side of the box is outside it.
+    const auto close = [&](const Point& out) {
+      const double d = ahead(out, corner) + slack_;
+      if (!(d > 0)) return;
+      const Point n = in_frame(out);
+      reaches_.push_back({false, n, d, 0, 0});
+      insert_reach({0, {-n.x / d, -2 * n.y / d, n.x / d}, 0}, t0, t1, 0);
     };
-    raise_ceiling(corner, corner, outline_.length(v), fill, [&](size_t k) { return reach(k); });
+    close({1, 0}), close({-1, 0}), close({0, 1}), close({0, -1});
+    const auto add = [&](int j) {
+      const bool lower = edge_to_vertex(v, j, t0, t1);
+      return (outline_.is_reflex(j) && vertex_to_vertex(v, j, t0, t1)) || lower;
+    };
+    features_beside(v, add);
+    const auto circle = [&](size_t k, const Real& t) { return circle_at_vertex(v, k, t); };
+    const auto counts = [&] { return use_at_vertex(v, t0, t1, around_) == RunUse::edges; };
+    const auto radius = [&](const Box& box) { return least_radius_at_vertex(v, t0, t1, box); };
+    const Found found = features_below(radius, add, circle, counts);
+    if (found == Found::nothing) return 0;
+    if (found == Found::too_many) {
+      const Real middle = ceiling_[ceiling_.size() / 2].from;
+      return part_of_vertex_cell(v, t0, middle) + part_of_vertex_cell(v, middle, t1);
+    }
+    return within_reach(v, t0, t1);
+  }
+
+  // Adds the reflex vertex w to the ceiling of the cell of vertex v: the cell ends on the
+  // perpendicular bisector u . p = |p|^2 / (2 rho), u the unit direction.
+  bool vertex_to_vertex(int v, int w, const Real& t0, const Real& t1) {
+    if (w == v) return false;
+    using std::sqrt;
+    const Point p = in_frame(outline_.vertex(w) - outline_.vertex(v));
+    const Real d2 = dot(p, p) / 2;
+    reaches_.push_back({false, p, d2, 0, 0});
+    return insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1, sqrt(d2 / 2));
+  }
+
+  [[nodiscard]] TouchingCircle circle_at_vertex(int v, size_t k, const Real& t) const {
+    const Reach& border = reaches_[ceiling_[k].function.id];
+    const Point& corner = outline_.vertex(v);
+    const Real radius = distance_of_ceiling(k, t);
+    const Point centre = corner + unit(t) * radius;
+    const Point normal = out_of_frame(border.normal);
+    const Point other = border.parabola ? centre + normal * radius
+                                        : corner + normal * (2 * border.d / dot(normal, normal));
+    return {rounded(centre), static_cast<double>(radius), rounded(corner), rounded(other)};
+  }
+
+  [[nodiscard]] double distance_between(const Point& corner, const Box& box) const {
+    const Vec2 c = rounded(corner);
+    const double x = std::max({0., box.x0 - c.x(), c.x() - box.x1});
+    const double y = std::max({0., box.y0 - c.y(), c.y() - box.y1});
+    return std::max(0., std::sqrt(x * x + y * y) - slack_);
+  }
+
+  // The directions in which a box is seen from the corner of the present cell: all of them if it is
+  // not clearly ahead.
+  struct Sight {
+    double from = -HUGE_VAL, to = HUGE_VAL;
+  };
+  static constexpr double kSameDirection = 1e-12;  // more than the round-off of directions
+  [[nodiscard]] Sight seen_from(const Point& corner, const Box& box) const {
+    const Vec2 c = rounded(corner), axis = rounded(axis_);
+    if (!(distance_between(corner, box) > 0)) return {};
+    const Box b = box.grown(slack_);
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    for (const Vec2& p : {Vec2(b.x0, b.y0), Vec2(b.x1, b.y0), Vec2(b.x0, b.y1), Vec2(b.x1, b.y1)}) {
+      const Vec2 arm = p - c;
+      const double in_front = axis.dot(arm);
+      if (!(in_front > 0)) return {};
+      const double t = cross(axis, arm) / (in_front + arm.norm());
+      from = std::min(from, t), to = std::max(to, t);
+    }
+    return {from - kSameDirection, to + kSameDirection};
+  }
+
+  // The distances from the corner of the present cell of the part of a box that is seen in the
+  // directions t0 to t1.
+  [[nodiscard]] Range distances_in(const Point& corner, const Real& t0, const Real& t1,
+                                   const Box& box) const {
+    const Vec2 first = rounded(unit(t0)), last = rounded(unit(t1)), c = rounded(corner);
+    Range range{.least = distance_between(corner, box)};
+    const auto cut = [&](const Vec2& side, double low, double high) {
+      const bool passed = cross(first, side) > 0 && cross(side, last) > 0;
+      const double most = passed ? 1 : std::max(first.dot(side), last.dot(side)) + kSameDirection;
+      const double least = std::min(first.dot(side), last.dot(side)) - kSameDirection;
+      low -= slack_, high += slack_;
+      if (low > 0) range.least = std::max(range.least, most > 0 ? low / most : HUGE_VAL);
+      if (least > 0) range.most = std::min(range.most, high / least);
+    };
+    cut({1, 0}, box.x0 - c.x(), box.x1 - c.x());
+    cut({-1, 0}, c.x() - box.x1, c.x() - box.x0);
+    cut({0, 1}, box.y0 - c.y(), box.y1 - c.y());
+    cut({0, -1}, c.y() - box.y1, c.y() - box.y0);
+    return range;
+  }
+
+  // At most the radius of the circles through vertex v whose centres are seen from there in the
+  // directions t0 to t1, and that reach into a box: the circle with the centre in the direction u
+  // passes through p if its radius is |p|^2 / (2 u . p).
+  [[nodiscard]] double least_radius_at_vertex(int v, const Real& t0, const Real& t1,
+                                              const Box& box) const {
+    const Point& corner = outline_.vertex(v);
+    const Vec2 first = rounded(unit(t0)), last = rounded(unit(t1)), c = rounded(corner);
+    double most = 0;
+    for (const Vec2& p :
+         {Vec2(box.x0, box.y0), Vec2(box.x1, box.y0), Vec2(box.x0, box.y1), Vec2(box.x1, box.y1)}) {
+      const Vec2 arm = p - c;
+      const bool between = cross(first, arm) > 0 && cross(arm, last) > 0;
+      most = std::max(most, between ? arm.norm() : std::max(first.dot(arm), last.dot(arm)));
+    }
+    const double least = distance_between(corner, box);
+    return most > 0 ? std::max(0., least * least / (2 * (most + slack_)) - slack_) : HUGE_VAL;
+  }
+
+  // What is to be done with edges in a box, for the part of the cell of vertex v from t0 to t1.
+  [[nodiscard]] RunUse use_at_vertex(int v, const Real& t0, const Real& t1, const Box& box) const {
+    const Point& corner = outline_.vertex(v);
+    const Point &left = outline_.normal(outline_.before(v)), &right = outline_.normal(v);
+    if (ahead({-right.y, right.x}, corner, box) < -slack_ ||
+        ahead({left.y, -left.x}, corner, box) < -slack_) {
+      return RunUse::none;
+    }
+    const Sight sight = seen_from(corner, box);
+    const Real first = std::max(t0, Real(sight.from)), last = std::min(t1, Real(sight.to));
+    if (first > last) return RunUse::none;
+    const auto range = [&](const Real& a, const Real& b) {
+      return distances_in(corner, a, b, box);
+    };
+    const auto height = [&](size_t k, const Real& t) { return distance_of_ceiling(k, t); };
+    const Range all = range(first, last);
+    if (all.most < all.least) return RunUse::none;
+    const bool beyond = lies_beyond(first, last, all, height, range);
+    return beyond ? RunUse::whole : RunUse::edges;
+  }
+
+  // Volume over the part of the cell of vertex v from t0 to t1, whose ceiling is known.
+  Real within_reach(int v, const Real& t0, const Real& t1) {
+    const auto judge = [&](const Box& box) { return use_at_vertex(v, t0, t1, box); };
+    const Point& corner = outline_.vertex(v);
+    const Point &left = outline_.normal(outline_.before(v)), &right = outline_.normal(v);
+    middle_ = t0 < 0 && t1 > 0 ? Real(0) : Real((t0 + t1) / 2);
     Sums sums;
     Real coverage = 0;    // winding number of the ring about the vertex, in the middle direction
     bool inside = false;  // whether the ring has a vertex inside the cell or enters it sideways
-    const auto judge = [&](const Box& box) {
-      if (ahead(past_right, corner, box) < -slack_ || ahead(past_left, corner, box) < -slack_) {
-        return RunUse::none;
-      }
-      return beyond_ceiling(axis_, corner, box) ? RunUse::whole : RunUse::edges;
-    };
     each_line(judge, [&](const Point& from, const Point& to) {
       Point p = from - corner, q = to - corner;
       if (!clip(p, q, cross(right, p), cross(right, q))) return;
@@ -390,6 +726,15 @@ class DistanceVolume {
 
   // Components of a vector along the middle direction and to its left.
   [[nodiscard]] Point in_frame(const Point& p) const { return {dot(axis_, p), cross(axis_, p)}; }
+  [[nodiscard]] Point out_of_frame(const Point& p) const {
+    return {axis_.x * p.x - axis_.y * p.y, axis_.y * p.x + axis_.x * p.y};
+  }
+
+  // The unit vector of a direction.
+  [[nodiscard]] Point unit(const Real& t) const {
+    const Real size = 1 + t * t;
+    return out_of_frame({(1 - t * t) / size, 2 * t / size});
+  }
 
   // t = tan(theta/2) for the direction of p.
   static Real half_tangent(const Point& p) {
@@ -428,24 +773,27 @@ class DistanceVolume {
 
   // Adds the function -(1 + t^2)/rho of the last element of reaches_ to the ceiling. The sign makes
   // the nearest border the lower envelope.
-  void insert_reach(Quadratic inverse, const Real& t0, const Real& t1, const Real& least) {
+  bool insert_reach(Quadratic inverse, const Real& t0, const Real& t1, const Real& least) {
     inverse.id = static_cast<int>(reaches_.size()) - 1;
-    add_border(inverse, t0, t1, least, [&](size_t k) { return reach(k); });
+    return add_border(inverse, t0, t1, least, [&](size_t k) { return reach(k); });
   }
-  // The largest distance of a piece of the ceiling from the vertex, which is at one of its ends.
+  // The distance of piece k of the ceiling from the vertex.
+  [[nodiscard]] Real distance_of_ceiling(size_t k, const Real& t) const {
+    const Real inverse = -ceiling_[k].function(t);
+    return inverse > 0 ? Real((1 + t * t) / inverse) : std::numeric_limits<Real>::infinity();
+  }
+  // The largest of them, which is at one of the ends of the piece.
   [[nodiscard]] Real reach(size_t k) const {
-    const auto at = [&](const Real& t) {
-      const Real inverse = -ceiling_[k].function(t);
-      return inverse > 0 ? Real((1 + t * t) / inverse) : std::numeric_limits<Real>::infinity();
-    };
-    return std::max(at(ceiling_[k].from), at(ceiling_.end(k)));
+    return std::max(distance_of_ceiling(k, ceiling_[k].from),
+                    distance_of_ceiling(k, ceiling_.end(k)));
   }
 
   // Adds the parabola between the vertex v and edge j, where the circle touches j within the edge.
-  void reach_to_edge(int v, int j, const Real& t0, const Real& t1) {
+  bool edge_to_vertex(int v, int j, const Real& t0, const Real& t1) {
+    if (j == v || j == outline_.before(v)) return false;
     using std::sqrt;
     const Real d = outline_.height(j, v);
-    if (!(d > 0)) return;
+    if (!(d > 0)) return false;
     const Point m = in_frame(outline_.normal(j)) * Real(-1);
     Real ec, es;
     if (m.x >= 0) {
@@ -463,7 +811,7 @@ class DistanceVolume {
     const Real y1 = dot(t, outline_.vertex(outline_.after(j)) - outline_.vertex(v)) / d;
     // t = (es + ec y) / (ec - es y) increases with y, and may pass through infinity once.
     const Real infinite = std::numeric_limits<Real>::infinity();
-    if (!(y0 > -infinite && y0 < infinite && y1 > -infinite && y1 < infinite)) return;
+    if (!(y0 > -infinite && y0 < infinite && y1 > -infinite && y1 < infinite)) return false;
     const Real below0 = ec - es * y0;
     const Real below1 = ec - es * y1;
     const Real from = below0 == 0 ? Real(-infinite) : Real((es + ec * y0) / below0);
@@ -475,11 +823,10 @@ class DistanceVolume {
             ? Quadratic{-ec / es, {0, 0, -2 * es * es / d}, 0}
             : Quadratic{0, {-2 * ec * ec / d, -4 * ec * es / d, -2 * es * es / d}, 0};
     if (below0 != 0 && below1 != 0 && (below0 > 0) != (below1 > 0)) {
-      insert_reach(inverse, std::max(t0, from), t1, d / 2);
-      insert_reach(inverse, t0, std::min(t1, to), d / 2);
-    } else {
-      insert_reach(inverse, std::max(t0, from), std::min(t1, to), d / 2);
+      const bool lower = insert_reach(inverse, std::max(t0, from), t1, d / 2);
+      return insert_reach(inverse, t0, std::min(t1, to), d / 2) || lower;
     }
+    return insert_reach(inverse, std::max(t0, from), std::min(t1, to), d / 2);
   }
 
   // The volume between the directions t1 and t2 up to the border: the integral of min(r, rho) rho
@@ -534,13 +881,13 @@ class DistanceVolume {
     Real t1 = half_tangent(p), t2 = half_tangent(q);
     const int sign = t1 < t2 ? 1 : -1;
     if (sign < 0) std::swap(t1, t2);
-    if ((t1 < 0) != (t2 < 0)) coverage += sign;
+    if ((t1 < middle_) != (t2 < middle_)) coverage += sign;
     const Point edge = sign > 0 ? q - p : p - q;
     const Point normal{edge.y, -edge.x};
     const Real d = std::max(Real(0), dot(normal, p));
     const Reach own{false, normal, d, 0, 0};
     const Quadratic line{0, {-normal.x, -2 * normal.y, normal.x}, 0};  // equal to -d (1 + t^2)/rho
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
+    for (size_t k = ceiling_.at(t1); k < ceiling_.size() && ceiling_[k].from < t2; ++k) {
       const Real from = std::max(t1, ceiling_[k].from);
       const Real to = std::min(t2, ceiling_.end(k));
       if (!(from < to) || !ceiling_[k].known) continue;
@@ -559,20 +906,23 @@ class DistanceVolume {
     }
   }
 
+  int few_;
   bool capped_ = false;
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
-  Box around_;                                 // the ring, or what is asked for of its inside
-  std::optional<RingTree> tree_;               // of the ring, if it has many edges
-  double slack_ = 0;                           // round-off of positions in boxes, m
-  double depth_ = 0;                           // no point that counts is deeper, m
-  std::vector<int> near_edges_, near_reflex_;  // of the present cell
-  Real highest_{};                             // no more than this is the ceiling's distance
+  Box around_;                            // the ring, or what is asked for of its inside
+  std::optional<RingTree> tree_;          // of the ring, if it has many edges
+  double slack_ = 0;                      // round-off of positions in boxes, m
+  double depth_ = 0;                      // no point that counts is deeper, m
+  Real highest_{};                        // no more than this is the ceiling's distance
+  std::vector<TouchingCircles> circles_;  // of the pieces of the ceiling, for features_below()
+  TouchingCircle empty_;                  // the largest circle that is known to be empty
   std::vector<Real> cuts_;
   PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
   std::vector<Reach> reaches_;                 // borders of the present vertex's cell
   Point axis_{};                               // middle direction of the present vertex's cell
+  Real middle_{};                              // a direction inside the present part of it
 };
 
 }  // namespace apothem

@@ -122,8 +122,7 @@ class DistanceTrace {
       if (b.s <= 0 || a.s >= 1 || !(b.s > a.s)) continue;
       const Real s0 = std::max(a.s, Real(0));
       const Real s1 = std::min(b.s, Real(1));
-      trace(field, s0, s1, a.edge, b.edge);
-      add_pieces(moments);
+      integrate_part(field, s0, s1, a.edge, b.edge, moments);
       segment(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
     }
   }
@@ -184,9 +183,10 @@ class DistanceTrace {
     }
   };
 
+  static constexpr int kNoEdge = -1;
   struct Crossing {
     Real s;
-    int edge;
+    int edge;  // kNoEdge far from the segment
   };
 
   // Finds the crossings of the line p + s e with the edges.
@@ -197,20 +197,55 @@ class DistanceTrace {
       lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
     };
     if constexpr (std::is_same_v<Real, double>) {
-      if (field.trees) {
-        field.trees->each(
-            [&](const Box& box) { return !lines_.passes(box.x0, box.y0, box.x1, box.y1); },
-            [&](int a) {
-              const int b = next(field.links, a, field.size);
-              lines_.place(a, a + 1);
-              lines_.place(b, b + 1);
-              cross(a, b);
-            });
-        return;
-      }
+      if (field.trees) return find_crossings_near(field);
     }
     lines_.place(0, field.size);
     for (int a = 0; a < field.size; ++a) cross(a, next(field.links, a, field.size));
+  }
+
+  // Finds the crossings of the segment, and those before it where they are an odd number: of a run
+  // of edges there one line from its start to its end is crossed an odd number of times with it.
+  void find_crossings_near(const PlacedDistance<double>& field) {
+    const double e2 = ex_ * ex_ + ey_ * ey_;
+    const auto judge = [&](const Box& box) {
+      if (lines_.passes(box.x0, box.y0, box.x1, box.y1)) return RunUse::none;
+      constexpr double kRoundOff = 1e-12;
+      const double x0 = box.x0 - px_, x1 = box.x1 - px_, y0 = box.y0 - py_, y1 = box.y1 - py_;
+      const double slack = kRoundOff * (std::abs(ex_) * std::max(std::abs(x0), std::abs(x1)) +
+                                        std::abs(ey_) * std::max(std::abs(y0), std::abs(y1)) + e2);
+      const double least = ex_ * (ex_ > 0 ? x0 : x1) + ey_ * (ey_ > 0 ? y0 : y1);
+      if (least > e2 + slack) return RunUse::none;
+      const double most = ex_ * (ex_ > 0 ? x1 : x0) + ey_ * (ey_ > 0 ? y1 : y0);
+      return most < -slack ? RunUse::whole : RunUse::edges;
+    };
+    field.trees->each_line(judge, [&](int a, int b) {
+      lines_.place(a, a + 1);
+      lines_.place(b, b + 1);
+      const int edge = next(field.links, a, field.size) == b ? a : kNoEdge;
+      lines_.cross(a, b, [&](double s, double) { crossings_.push_back({s, edge}); });
+    });
+    // One of those behind the segment, which are left out, ends the last part.
+    if (crossings_.size() % 2 != 0) {
+      crossings_.push_back({std::numeric_limits<double>::infinity(), kNoEdge});
+    }
+  }
+
+  // Adds the integrals between s0 and s1. A part with many pieces is halved, so that each function
+  // is compared with few of them.
+  void integrate_part(const PlacedDistance<Real>& field, const Real& s0, const Real& s1, int first,
+                      int second, SegmentMoments<Real>& moments) {
+    trace(field, s0, s1, first, second);
+    if (!too_many(field)) return add_pieces(moments);
+    const Real middle = envelope_[envelope_.size() / 2].from;
+    integrate_part(field, s0, middle, first, second, moments);
+    integrate_part(field, middle, s1, first, second, moments);
+  }
+
+  // Whether the minimum has so many pieces that it is not worth while to go on. Without trees all
+  // functions are tried anyway.
+  [[nodiscard]] bool too_many(const PlacedDistance<Real>& field) const {
+    constexpr size_t kMost = 32;
+    return field.trees && envelope_.size() > kMost;
   }
 
   // Finds the minimum over all edges and vertices between s0 and s1. The two edges that the segment
@@ -221,8 +256,8 @@ class DistanceTrace {
     envelope_.reset(s0, s1);
     bound_ = std::numeric_limits<Real>::infinity();
     if (field.capped) insert({1, 0, k_, -1, false}, s0, s1);
-    insert_edge(field, first, s0, s1);
-    insert_edge(field, second, s0, s1);
+    if (first != kNoEdge) insert_edge(field, first, s0, s1);
+    if (second != kNoEdge) insert_edge(field, second, s0, s1);
     if constexpr (std::is_same_v<Real, double>) {
       if (field.trees) return insert_near(field, s0, s1);
     }
@@ -237,7 +272,7 @@ class DistanceTrace {
     constexpr double kSure = 1 + 1e-9;  // more than one by far more than round-off
     const auto at = [&](double s) { return Vec2(px_ + s * ex_, py_ + s * ey_); };
     field.trees->each_near_first(
-        at(s0), at(s1), [&] { return kSure * bound_ / field.slope; },
+        at(s0), at(s1), [&] { return too_many(field) ? -HUGE_VAL : kSure * bound_ / field.slope; },
         [&](int i) {
           insert_edge(field, i, s0, s1);
           if (std::binary_search(field.corners->begin(), field.corners->end(), i)) {

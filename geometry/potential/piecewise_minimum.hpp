@@ -42,9 +42,7 @@ class PiecewiseMinimum {
   bool insert(const Function& f, const Real& from, const Real& to) {
     next_.clear();
     bool changed = false;
-    const auto starts_behind = [](const Real& s, const Piece& piece) { return s < piece.from; };
-    const auto behind = std::upper_bound(pieces_.begin(), pieces_.end(), from, starts_behind);
-    const auto first = static_cast<size_t>(behind - pieces_.begin()) - (behind != pieces_.begin());
+    const size_t first = at(from);
     size_t last = first;
     for (; last < pieces_.size() && (last == first || pieces_[last].from < to); ++last) {
       const Piece& piece = pieces_[last];
@@ -65,6 +63,14 @@ class PiecewiseMinimum {
 
   /// Number of pieces.
   [[nodiscard]] size_t size() const { return pieces_.size(); }
+  /// The number of the piece that a point of the interval is in; of the first one before it.
+  [[nodiscard]] size_t at(const Real& s) const {
+    const auto starts_behind = [](const Real& place, const Piece& piece) {
+      return place < piece.from;
+    };
+    const auto behind = std::upper_bound(pieces_.begin(), pieces_.end(), s, starts_behind);
+    return static_cast<size_t>(behind - pieces_.begin()) - (behind != pieces_.begin());
+  }
   /// Piece i, counted along the interval.
   [[nodiscard]] const Piece& operator[](size_t i) const { return pieces_[i]; }
   /// The end of piece i.

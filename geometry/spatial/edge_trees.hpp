@@ -22,6 +22,7 @@ class EdgeTrees {
       for (int i = first; i < last; ++i) ring.emplace_back(x[i], y[i]);
       firsts_.push_back(first);
       trees_.emplace_back(std::move(ring));
+      trees_.back().add_slabs();
     });
   }
 
@@ -34,14 +35,27 @@ class EdgeTrees {
     }
   }
 
+  /// Calls f(from, to) for lines from one vertex of a ring to another, as RingTree::each_line().
+  template <class Judge, class F>
+  void each_line(const Judge& judge, const F& f) const {
+    for (size_t k = 0; k < trees_.size(); ++k) {
+      const int first = firsts_[k];
+      trees_[k].each_line(judge, [&](size_t from, size_t to) {
+        f(first + static_cast<int>(from), first + static_cast<int>(to));
+      });
+    }
+  }
+
   /// Calls f(edge) for edges, roughly those first that are near the segment from a to b. It leaves
   /// out only those that are farther from it than reach(), which may become smaller meanwhile.
   template <class Reach, class F>
   void each_near_first(const Vec2& a, const Vec2& b, const Reach& reach, const F& f) const {
     const SegmentDistance distance(a, b);
     for (size_t k = 0; k < trees_.size(); ++k) {
-      trees_[k].each_near_first([&](const Box& box) { return distance.least(box); }, reach,
-                                [&](int e) { f(firsts_[k] + e); });
+      trees_[k].each_near_first(
+          [&](const Box& box, const Slab& slab) { return distance.least(box, slab); },
+          [&](const Box&, const Slab&, double least) { return !(least > reach()); },
+          [&](int e) { f(firsts_[k] + e); });
     }
   }
 

@@ -35,10 +35,23 @@ class Strip {
   double distance_;
 };
 
+/// The points p between two parallel lines: low <= normal . p <= high, where the normal is a unit
+/// vector. By default these are all points.
+struct Slab {
+  Vec2 normal = Vec2::Zero();
+  double low = -HUGE_VAL, high = HUGE_VAL;
+
+  /// How far a point is from them.
+  [[nodiscard]] double distance(const Vec2& p) const {
+    const double along = normal.dot(p);
+    return std::max({0., low - along, along - high});
+  }
+};
+
 /// How far boxes are from the segment from a to b.
 class SegmentDistance {
  public:
-  SegmentDistance(const Vec2& a, const Vec2& b) : around_(box_of(a, b)), start_(a) {
+  SegmentDistance(const Vec2& a, const Vec2& b) : around_(box_of(a, b)), start_(a), end_(b) {
     const Vec2 side = b - a;
     const double length = side.norm();
     if (length > 0) normal_ = {-side.y() / length, side.x() / length};
@@ -52,10 +65,16 @@ class SegmentDistance {
     const Vec2 centre = Vec2(box.x0, box.y0) + half - start_;
     return std::max(gap.norm(), std::abs(normal_.dot(centre)) - normal_.cwiseAbs().dot(half));
   }
+  /// The same of the points of a slab that are in the box.
+  [[nodiscard]] double least(const Box& box, const Slab& slab) const {
+    const double at_start = slab.normal.dot(start_), at_end = slab.normal.dot(end_);
+    return std::max({least(box), slab.low - std::max(at_start, at_end),
+                     std::min(at_start, at_end) - slab.high});
+  }
 
  private:
   Box around_;
-  Vec2 start_;
+  Vec2 start_, end_;
   Vec2 normal_ = Vec2::Zero();
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/exact/exact_integral.hpp"
+#include "tests/geometry/long_outlines.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;
@@ -22,18 +23,31 @@ PotentialChoice choice_of(double length) {
 // The integral of phi of `owner` over `other`, in coordinates relative to `origin`. The reference
 // length is either much less than 1 or more than the depth of the polygon, so that phi stays below
 // its limit.
-double volume(const Polygon& owner, const Polygon& other, double length, const Vec2& origin) {
-  std::vector<double> px, py, x, y;
+double volume(const Polygon& owner, const Polygon& other, double length, const Vec2& origin,
+              DistanceVolume<double> integral = DistanceVolume<double>()) {
+  std::vector<double> px, py;
   for (int i = 0; i <= owner.size(); ++i) {
     const Vec2 p = owner[i % owner.size()] - origin;
     px.push_back(p.x()), py.push_back(p.y());
   }
-  for (const Vec2& v : other.vertices()) {
-    x.push_back(v.x() - origin.x()), y.push_back(v.y() - origin.y());
+  const PlacedDistance<double> field{.size = owner.size(),
+                                     .x = px.data(),
+                                     .y = py.data(),
+                                     .gx = nullptr,
+                                     .gy = nullptr,
+                                     .slope = 1 / length,
+                                     .corners = nullptr,
+                                     .capped = length < 1,
+                                     .links = owner.links()};
+  double sum = 0;
+  for (int k = 0; k < other.rings(); ++k) {
+    std::vector<double> x, y;
+    for (const Vec2& v : other.ring(k)) {
+      x.push_back(v.x() - origin.x()), y.push_back(v.y() - origin.y());
+    }
+    sum += integral.over(field, x, y);
   }
-  const PlacedDistance<double> field{owner.size(), px.data(),  py.data(), nullptr,
-                                     nullptr,      1 / length, nullptr,   length < 1};
-  return DistanceVolume<double>().over(field, x, y);
+  return sum;
 }
 
 double distance(const Polygon& polygon, const Vec2& p) {
@@ -314,4 +328,48 @@ TEST_CASE("the integral over a big ring is the sum of those over triangles", "[d
     }
   }
   CHECK(deep > test::least(test::scaled(120)));
+}
+
+TEST_CASE("trees find all that bounds the cells of long outlines", "[distance-volume]") {
+  test::SeededRandom random(73);
+  int deep = 0;
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const Polygon owner = test::long_outline(random, i % test::kOutlineKinds);
+    const Polygon shape = test::long_outline(random, random.integer(0, test::kOutlineKinds - 1));
+    // Some overlaps are small, others all of a polygon, and some polygons are not turned.
+    const double size = i % 5 == 0 ? 3 : std::exp(random.uniform(-4, 1));
+    const Vec2 centre = owner[random.integer(0, owner.size() - 1)];
+    const Polygon other =
+        samples::posed(samples::scaled(shape, size),
+                       centre + Vec2(random.uniform(-size, size), random.uniform(-size, size)) / 2,
+                       random.integer(0, 1) * random.uniform(0, 6));
+    for (const double length : {.02, 10.}) {
+      const double few = volume(owner, other, length, Vec2::Zero(), DistanceVolume<double>(10000));
+      const double many = volume(owner, other, length, Vec2::Zero(), DistanceVolume<double>(0));
+      INFO("pair " << i << ", length " << length);
+      CHECK(std::abs(many - few) <= 1e-13 * few + 1e-16);
+      deep += few > 0;
+    }
+    // With bounds of the overlap, as a pair has them.
+    const PotentialChoice choice = choice_of(.02);
+    const double energy = volume(owner, other, .02, Vec2::Zero(), DistanceVolume<double>(10000)) +
+                          volume(other, owner, .02, Vec2::Zero(), DistanceVolume<double>(10000));
+    CHECK(test::edge(owner, other, choice).volume.energy ==
+          Approx(energy).epsilon(1e-12).margin(1e-15));
+  }
+  CHECK(deep > test::least(test::scaled(200)));
+}
+
+TEST_CASE("every cell of a round outline reaches its middle", "[distance-volume]") {
+  // All features are equally far from the middle, up to round-off. The integral over the whole
+  // outline is that over a large square.
+  for (const int n : {40, 200, 600}) {
+    for (const Polygon& owner : {samples::gear(n / 4), samples::star(n / 2, .5)}) {
+      const double within = volume(owner, owner, 10, Vec2::Zero());
+      CHECK(volume(owner, samples::block(-2, -2, 2, 2), 10, Vec2::Zero()) ==
+            Approx(within).epsilon(1e-14 * n));
+      CHECK(volume(owner, owner, 10, Vec2::Zero(), DistanceVolume<double>(10000)) ==
+            Approx(within).epsilon(1e-14 * n));
+    }
+  }
 }

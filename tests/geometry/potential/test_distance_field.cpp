@@ -5,6 +5,7 @@
 #include "geometry/exact/exact_integral.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
 #include "geometry/skeleton/skeleton.hpp"
+#include "tests/geometry/long_outlines.hpp"
 #include "tests/geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
@@ -188,6 +189,62 @@ TEST_CASE("the distance field along segments against quadrature", "[distance-fie
           Approx(quadrature([&](double u) { return u * phi(u); }, 0, 1, 64, 1e-12)).margin(1e-11));
     }
   }
+}
+
+TEST_CASE("trees find all that is near a segment in a long outline", "[distance-field]") {
+  test::SeededRandom random(97);
+  int inside = 0, parts = 0;
+  for (int i = 0; i < test::scaled(200); ++i) {
+    const Polygon polygon = test::long_outline(random, i % test::kOutlineKinds);
+    const double r = i % 2 == 0 ? .02 : 10;
+    const Potential potential = make_potential(polygon, field_choice(Reference::length, r));
+    std::vector<double> x, y, gx, gy;
+    for (int k = 0; k < polygon.size(); ++k) {
+      x.push_back(polygon[k].x()), y.push_back(polygon[k].y());
+      gx.push_back(potential.gradients[k].x()), gy.push_back(potential.gradients[k].y());
+    }
+    const EdgeTrees trees(x.data(), y.data(), polygon.size(), polygon.links());
+    PlacedDistance<double> field{.size = polygon.size(),
+                                 .x = x.data(),
+                                 .y = y.data(),
+                                 .gx = gx.data(),
+                                 .gy = gy.data(),
+                                 .slope = potential.distance->slope,
+                                 .corners = &potential.distance->corners,
+                                 .capped = potential.capped(),
+                                 .links = polygon.links()};
+    // Most segments are long and cross many edges. Some pass through vertices.
+    const Box box = bounding_box(polygon);
+    const auto place = [&]() -> Vec2 {
+      if (random.integer(0, 3) == 0) return polygon[random.integer(0, polygon.size() - 1)];
+      return {random.uniform(box.x0, box.x1), random.uniform(box.y0, box.y1)};
+    };
+    for (int k = 0; k < 20; ++k) {
+      const Vec2 p = place(), e = random.uniform(0, 1.2) * (place() - p);
+      using Part = std::array<double, 2>;
+      std::vector<Part> all, found;
+      const auto integrate = [&](std::vector<Part>& list) {
+        return DistanceTrace<double>().integrate(field, p.x(), p.y(), e.x(), e.y(),
+                                                 [&](double s0, double s1) {
+                                                   list.push_back({s0, s1});
+                                                 });
+      };
+      field.trees = nullptr;
+      const SegmentMoments<double> expected = integrate(all);
+      field.trees = &trees;
+      const SegmentMoments<double> got = integrate(found);
+      INFO("polygon " << i << ", segment " << k);
+      REQUIRE(found == all);
+      // A segment along an edge is as deep as the round-off of positions.
+      const double tolerance = 1e-13 * expected.largest + 1e-16 / r;
+      CHECK(std::abs(got.sum - expected.sum) <= tolerance);
+      CHECK(std::abs(got.first - expected.first) <= tolerance);
+      CHECK(std::abs(got.largest - expected.largest) <= tolerance);
+      inside += !found.empty(), parts += static_cast<int>(found.size());
+    }
+  }
+  CHECK(inside > test::least(test::scaled(200)));
+  CHECK(parts > test::least(3 * inside / 2));
 }
 
 TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distance-field]") {

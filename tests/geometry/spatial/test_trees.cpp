@@ -6,6 +6,7 @@
 #include "geometry/spatial/edge_trees.hpp"
 #include "geometry/spatial/point_tree.hpp"
 #include "geometry/spatial/ring_tree.hpp"
+#include "geometry/spatial/touching_circles.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;
@@ -146,6 +147,83 @@ TEST_CASE("the trees of a polygon's edges leave out none that is within reach of
       if (of_ends < reach) REQUIRE(found.count(e) == 1);
     }
     left_out += n - static_cast<int>(found.size());
+  }
+  CHECK(left_out > test::least(100));
+}
+
+TEST_CASE("runs of edges come in the order of their boxes", "[boxes]") {
+  test::SeededRandom random(95);
+  int narrow = 0;
+  for (int round = 0; round < test::scaled(400); ++round) {
+    // Some are long and thin teeth, around which slabs are narrow.
+    const std::vector<Vec2> ring = round % 20 == 0
+                                       ? samples::star(random.integer(300, 600), .3).vertices()
+                                       : random_points(random, random.integer(3, 200));
+    RingTree tree(ring);
+    tree.add_slabs();
+    const Box around = box_of(ring).grown(.5);
+    const Vec2 p(random.uniform(around.x0, around.x1), random.uniform(around.y0, around.y1));
+    const double reach = random.uniform(0, 2);
+    const SegmentDistance distance(p, p);
+    const auto measure = [&](const Box& box) { return distance.least(box); };
+    double last = 0;
+    const auto counts = [&](const Box& box, const Slab& slab, double least) {
+      CHECK(least >= last);
+      last = least;
+      narrow += slab.high - slab.low < .2 * box.extent();
+      return distance.least(box, slab) <= reach;
+    };
+    std::set<int> found;
+    std::vector<RingTree::Run> memory;
+    tree.each_in_order(
+        measure, counts, [&](int e) { found.insert(e); }, memory);
+    for (int e = 0; e < tree.size(); ++e) {
+      const Vec2 a = ring[e] - p, b = after(ring, e) - p;
+      const double off = std::sqrt(nearest_on_segment(-a, b - a).distance2);
+      if (off < reach * (1 - 1e-12)) REQUIRE(found.count(e) == 1);
+    }
+  }
+  CHECK(narrow > test::least(100));
+}
+
+TEST_CASE("what is inside circles that touch two features is not left out", "[boxes]") {
+  test::SeededRandom random(96);
+  int left_out = 0;
+  for (int round = 0; round < test::scaled(2000); ++round) {
+    // Circles that touch the x axis at u, and the point p or the line n . x = d.
+    const Vec2 p(random.uniform(-2, 2), std::exp(random.uniform(-5, 1)));
+    const double angle = random.uniform(.1, 3), d = random.uniform(-2, 2);
+    const Vec2 n(std::sin(angle), -std::cos(angle));  // points into the wedge
+    const bool point = random.integer(0, 1) == 0;
+    const auto circle = [&](double u) {
+      const double r =
+          point ? (Vec2(u, 0) - p).squaredNorm() / (2 * p.y()) : (n.x() * u - d) / (1 - n.y());
+      const Vec2 centre(u, r);
+      return TouchingCircle{centre, r, Vec2(u, 0), point ? p : Vec2(centre - r * n)};
+    };
+    double u0 = random.uniform(-2, 2), u1 = random.uniform(-2, 2);
+    if (!point) {  // the side on which the circles are in front of both lines
+      const double corner = d / n.x();
+      u0 = corner + std::abs(u0), u1 = corner + std::abs(u1);
+    }
+    const TouchingCircles circles(circle(u0), circle(u1), 1e-12);
+    for (int k = 0; k < 20; ++k) {
+      const double share = random.uniform(0, 1), around = random.uniform(0, 2 * M_PI);
+      const TouchingCircle one = circle(u0 + share * (u1 - u0));
+      const Vec2 inside = one.centre + one.radius * random.uniform(.5, 1) *
+                                           Vec2(std::cos(around), std::sin(around));
+      const double size = std::exp(random.uniform(-8, 0));
+      const Vec2 corner = inside - size * Vec2(random.uniform(0, 1), random.uniform(0, 1));
+      const Box box{corner.x(), corner.y(), corner.x() + size, corner.y() + size};
+      const double side = random.uniform(0, 2 * M_PI);
+      const Vec2 normal(std::cos(side), std::sin(side));
+      const double low = normal.dot(inside) - size * random.uniform(0, 1);
+      REQUIRE(circles.meets(box, {}));
+      REQUIRE(circles.meets(box, {normal, low, low + size}));
+      // Beside all of the circles, and behind the axis.
+      CHECK_FALSE(circles.meets({box.x0, -1, box.x1, -1e-9}, {}));
+      left_out += !circles.meets(box, {normal, low + 1, low + 1 + size});
+    }
   }
   CHECK(left_out > test::least(100));
 }
