@@ -1,7 +1,7 @@
 // Outlines with many edges near each other, for searches by trees.
 #pragma once
 
-#include "apps/cases/samples.hpp"
+#include "tests/geometry/random_holed.hpp"
 
 namespace apothem::test {
 
