@@ -183,7 +183,7 @@ class DistanceVolume {
   }
 
   // The ceiling of a part of a cell with more pieces than this is divided.
-  static constexpr size_t kMostPieces = 16;
+  static constexpr size_t kMostPieces = 24;
   // So many features before and behind that of a cell along the outline are tried first.
   static constexpr int kBeside = 3;
 
