@@ -11,9 +11,9 @@
 // cells tile the polygon.
 //
 // A feature bounds a cell only if it lies inside a circle in the polygon that touches the cell's
-// own one. Of a long outline a tree of boxes finds these features, roughly the nearest first, while
-// the circles shrink. Only the part of a cell counts that may lie in the other polygon, and a cell
-// that many features bound is divided into parts with few of them each.
+// own one. Of a long outline a tree of boxes finds these features, roughly those first that the
+// smallest circles reach, while the circles shrink. Only the part of a cell counts that may lie in
+// the other polygon, and a cell that many features bound is divided into parts with few of them.
 //
 // The integral is, cell by cell, a signed sum over the edges of the other polygon: each edge
 // contributes the volume between itself and the foot of the cell, clamped to the cell. Edges beside
@@ -183,7 +183,7 @@ class DistanceVolume {
   }
 
   // The ceiling of a part of a cell with more pieces than this is divided.
-  static constexpr size_t kMostPieces = 16;
+  static constexpr size_t kMostPieces = 24;
   // So many features before and behind that of a cell along the outline are tried first.
   static constexpr int kBeside = 3;
 
