@@ -94,17 +94,19 @@ void add_outlines(std::vector<BenchmarkCase>& cases) {
   // often, the largest are left out: they would take minutes, or gigabytes for the layers of their
   // potentials.
   struct Outline {
+    Vec2 shift = {.6, .013};
     const char* name;
     Shape shape;
-    Vec2 shift = {.6, .013};
     int most = 50000;
   };
   const Outline outlines[]{
       {.name = "noisy_circle", .shape = of_random(noisy_circle), .most = 20000},
       {.name = "star", .shape = [](int n) { return samples::star(n / 2, .5); }, .most = 10000},
-      {"comb", [](int n) { return samples::comb(n / 4, 9); }},
-      {"gear", [](int n) { return samples::gear(std::max(n / 4, 3)); }},
-      {"staircase", [](int n) { return samples::staircase(n / 4); }, {.61, .61}}};
+      {.name = "comb", .shape = [](int n) { return samples::comb(n / 4, 9); }},
+      {.name = "gear", .shape = [](int n) { return samples::gear(std::max(n / 4, 3)); }},
+      {.shift = {.61, .61}, .name = "staircase", .shape = [](int n) {
+         return samples::staircase(n / 4);
+       }}};
   for (const Outline& outline : outlines) {
     for (const int n : {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000}) {
       cases.push_back(
