@@ -29,12 +29,11 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/integrals/cell_ceiling.hpp"
 #include "geometry/integrals/distance_outline.hpp"
 #include "geometry/polygon/cyclic.hpp"
-#include "geometry/potential/piecewise_minimum.hpp"
 #include "geometry/potential/quadratic.hpp"
 #include "geometry/spatial/ring_tree.hpp"
-#include "geometry/spatial/touching_circles.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -74,8 +73,9 @@ class DistanceVolume {
     }
     plant_tree(field);
     if (overlap) around_ = overlap->box;
-    empty_.radius = -HUGE_VAL;
-    depth_ = overlap ? kSure * overlap->depth + slack_ : std::numeric_limits<double>::infinity();
+    ceiling_.begin(slack_);
+    depth_ = overlap ? Ceiling::kSure * overlap->depth + slack_
+                     : std::numeric_limits<double>::infinity();
     Real volume = 0;
     if (outline_.size() < 3) return volume;
     for (int i = 0; i < outline_.size(); ++i) volume += edge_cell(i);
@@ -86,6 +86,8 @@ class DistanceVolume {
  private:
   using Point = PlanePoint<Real>;
   using Quadratic = apothem::Quadratic<Real>;
+  using Ceiling = CellCeiling<Real>;
+  using Range = CellRange;
 
   static Vec2 rounded(const Point& p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y)};
@@ -115,9 +117,6 @@ class DistanceVolume {
       for (size_t k = 0; k < ring_.size(); ++k) f(ring_[k], after(ring_, k));
     }
   }
-
-  // More than one by far more than round-off.
-  static constexpr double kSure = 1 + 1e-9;
 
   // The volume of one cell, summed from its foot (low) and from its ceiling (high), and the sums of
   // the absolute values of the terms. Both sums are equal up to round-off, but if the ring passes
@@ -182,8 +181,6 @@ class DistanceVolume {
     return apart(box_of(rounded(p), rounded(q)).grown(depth_), around_);
   }
 
-  // The ceiling of a part of a cell with more pieces than this is divided.
-  static constexpr size_t kMostPieces = 24;
   // So many features before and behind that of a cell along the outline are tried first.
   static constexpr int kBeside = 3;
 
@@ -219,112 +216,6 @@ class DistanceVolume {
     }
   }
 
-  // What features_below() has found.
-  enum class Found { all, too_many, nothing };
-  // Calls add(j) for the features that may lie below the ceiling of the present part of a cell.
-  // add(j) says whether it has changed the ceiling. circle(k, s) is the circle that touches the
-  // cell's own feature and that of piece k of the ceiling, at the place s, and radius(box) at most
-  // that of any such circle that reaches into a box: the smallest circles come first. Stops when
-  // the ceiling has too many pieces, and when nothing that counts is below it any more, which
-  // counts() says.
-  template <class Radius, class Add, class Circle, class Counts>
-  Found features_below(const Radius& radius, const Add& add, const Circle& circle,
-                       const Counts& counts) {
-    Found found = counts() ? Found::all : Found::nothing;
-    bool changed = true;
-    int changes = 0, next_look = 1;
-    const auto meets = [&](const Box& box, const Slab& slab, double least) {
-      if (ceiling_.size() > kMostPieces) found = Found::too_many;
-      if (changes >= next_look) {
-        next_look = 2 * changes;
-        if (!counts()) found = Found::nothing;
-      }
-      if (found != Found::all || least > kSure * static_cast<double>(highest_) + slack_) {
-        return false;
-      }
-      if (changed) draw_circles(circle), changed = false;
-      return std::ranges::any_of(circles_, [&](const auto& part) { return part.meets(box, slab); });
-    };
-    outline_.each_in_order(radius, meets, [&](int j, const Box& box, const Slab& slab) {
-      if (meets(box, slab, 0) && add(j)) changed = true, ++changes;
-    });
-    if (found == Found::all && !counts()) found = Found::nothing;
-    if (found == Found::all) remember_circle(circle);
-    return found;
-  }
-
-  // The circles of the pieces of the ceiling. In a round polygon most cells have one in its middle
-  // that touches all features, up to round-off. It is seen to be empty once.
-  template <class Circle>
-  void draw_circles(const Circle& circle) {
-    circles_.clear();
-    const auto draw = [&](size_t k, const Real& s) {
-      TouchingCircle drawn = circle(k, s);
-      drawn.empty = empty_.holds(drawn, slack_);
-      return drawn;
-    };
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
-      circles_.emplace_back(draw(k, ceiling_[k].from), draw(k, ceiling_.end(k)), slack_);
-    }
-  }
-  // Remembers a circle of a ceiling that is known, if it is larger than the one before. Between the
-  // functions of two features round-off may leave a gap in which nothing has been found, so that
-  // it has to be seen that the circle is empty.
-  template <class Circle>
-  void remember_circle(const Circle& circle) {
-    for (size_t k = 1; k < ceiling_.size(); ++k) {
-      const TouchingCircle drawn = circle(k, ceiling_[k].from);
-      if (drawn.radius > empty_.radius + slack_ &&
-          outline_.distance(drawn.centre) >= drawn.radius - slack_) {
-        empty_ = drawn;
-      }
-    }
-  }
-
-  // Lowers highest_ to the largest distance of the ceiling.
-  template <class Height>
-  void lower_highest(const Height& height) {
-    Real highest = 0;
-    for (size_t k = 0; k < ceiling_.size(); ++k) {
-      if (!ceiling_[k].known) return;
-      highest = std::max(highest, Real(height(k)));
-    }
-    highest_ = std::min(highest_, highest);
-  }
-
-  // Adds a function to the ceiling, unless its distances, which are at least `least`, are above it.
-  // Returns whether it has changed the ceiling.
-  template <class Height>
-  bool add_border(const Quadratic& f, const Real& from, const Real& to, const Real& least,
-                  const Height& height) {
-    if (least > kSure * highest_ || !ceiling_.insert(f, from, to)) return false;
-    lower_highest(height);
-    return true;
-  }
-
-  // The distances from a cell's own feature at which a box may be; an edge has those behind it,
-  // too. There are none if the least one is more than the largest one.
-  struct Range {
-    double least = -HUGE_VAL, most = HUGE_VAL;
-  };
-  // Whether a box is beyond the ceiling from s0 to s1, whose piece k is height(k, s) away at s.
-  // That is largest at the ends of a piece, and of a part of it. The box may be at the distances
-  // `all` there, and at range(a, b) from a to b.
-  template <class Height, class RangeIn>
-  [[nodiscard]] bool lies_beyond(const Real& s0, const Real& s1, const Range& all,
-                                 const Height& height, const RangeIn& range) const {
-    for (size_t k = ceiling_.at(s0); k < ceiling_.size() && !(ceiling_[k].from > s1); ++k) {
-      if (!ceiling_[k].known) return false;
-      const Real a = std::max(s0, ceiling_[k].from), b = std::min(s1, ceiling_.end(k));
-      const double high =
-          kSure * static_cast<double>(std::max(Real(height(k, a)), Real(height(k, b)))) + slack_;
-      if (all.least > high) continue;
-      const Range here = range(a, b);
-      if (!(here.least > std::min(high, here.most))) return false;
-    }
-    return true;
-  }
-
   // Volume over the cell of edge i.
   Real edge_cell(int i) {
     const Point t = outline_.tangent(i);
@@ -336,7 +227,6 @@ class DistanceVolume {
     if (ahead(t, start) < 0 || ahead(n, start) < 0 || ahead(t * Real(-1), stop) < 0) return 0;
     if (!outline_.has_many()) {
       ceiling_.reset(0, length);
-      highest_ = std::numeric_limits<Real>::infinity();
       all_features(
           i, [&](int j) { edge_over_edge(i, j); }, [&](int v) { vertex_over_edge(i, v); });
       return under_ceiling(i, 0, length);
@@ -352,7 +242,6 @@ class DistanceVolume {
     const double most = std::min(depth_, heights_over_edge(i, lo, hi, around_).most);
     if (!(most > 0)) return 0;
     ceiling_.reset(lo, hi);
-    highest_ = std::numeric_limits<Real>::infinity();
     add_over_edge({lo, {Real(most), 0, 0}, 2 * outline_.size()}, lo, hi, 0);
     const auto add = [&](int j) {
       const bool lower = edge_over_edge(i, j);
@@ -362,10 +251,10 @@ class DistanceVolume {
     const auto circle = [&](size_t k, const Real& tau) { return circle_at_edge(i, k, tau); };
     const auto counts = [&] { return use_at_edge(i, lo, hi, around_) == RunUse::edges; };
     const auto radius = [&](const Box& box) { return least_radius_at_edge(i, lo, hi, box); };
-    const Found found = features_below(radius, add, circle, counts);
-    if (found == Found::nothing) return 0;
-    if (found == Found::too_many) {
-      const Real middle = ceiling_[ceiling_.size() / 2].from;
+    const auto found = ceiling_.find(outline_, radius, add, circle, counts);
+    if (found == Ceiling::Found::nothing) return 0;
+    if (found == Ceiling::Found::too_many) {
+      const Real middle = ceiling_.middle();
       return part_of_edge_cell(i, lo, middle) + part_of_edge_cell(i, middle, hi);
     }
     return under_ceiling(i, lo, hi);
@@ -373,7 +262,7 @@ class DistanceVolume {
 
   // Adds a function to the ceiling over an edge.
   bool add_over_edge(const Quadratic& f, const Real& from, const Real& to, const Real& least) {
-    return add_border(f, from, to, least, [&](size_t k) { return height_of_ceiling(k); });
+    return ceiling_.add(f, from, to, least, [&](size_t k) { return height_of_ceiling(k); });
   }
   // Adds edge j, or the reflex vertex v, to the ceiling over edge i.
   bool edge_over_edge(int i, int j) {
@@ -458,7 +347,7 @@ class DistanceVolume {
     const auto height = [&](size_t k, const Real& tau) { return ceiling_[k].function(tau); };
     const Range all = range(first, last);
     if (all.most < all.least) return RunUse::none;
-    const bool one = all.most < 0 || lies_beyond(first, last, all, height, range);
+    const bool one = all.most < 0 || ceiling_.lies_below(first, last, all, height, range);
     return one ? RunUse::whole : RunUse::edges;
   }
 
@@ -533,7 +422,6 @@ class DistanceVolume {
     const Real t1 = half_tangent(in_frame(left));
     if (!outline_.has_many()) {
       ceiling_.reset(t0, t1);
-      highest_ = std::numeric_limits<Real>::infinity();
       reaches_.clear();
       all_features(
           v, [&](int j) { edge_to_vertex(v, j, t0, t1); },
@@ -549,7 +437,6 @@ class DistanceVolume {
     if (!(t0 < t1)) return 0;
     const Point& corner = outline_.vertex(v);
     ceiling_.reset(t0, t1);
-    highest_ = std::numeric_limits<Real>::infinity();
     reaches_.clear();
     // What is behind a side of the box is outside it.
     const auto close = [&](const Point& out) {
@@ -568,10 +455,10 @@ class DistanceVolume {
     const auto circle = [&](size_t k, const Real& t) { return circle_at_vertex(v, k, t); };
     const auto counts = [&] { return use_at_vertex(v, t0, t1, around_) == RunUse::edges; };
     const auto radius = [&](const Box& box) { return least_radius_at_vertex(v, t0, t1, box); };
-    const Found found = features_below(radius, add, circle, counts);
-    if (found == Found::nothing) return 0;
-    if (found == Found::too_many) {
-      const Real middle = ceiling_[ceiling_.size() / 2].from;
+    const auto found = ceiling_.find(outline_, radius, add, circle, counts);
+    if (found == Ceiling::Found::nothing) return 0;
+    if (found == Ceiling::Found::too_many) {
+      const Real middle = ceiling_.middle();
       return part_of_vertex_cell(v, t0, middle) + part_of_vertex_cell(v, middle, t1);
     }
     return within_reach(v, t0, t1);
@@ -683,7 +570,7 @@ class DistanceVolume {
     const auto height = [&](size_t k, const Real& t) { return distance_of_ceiling(k, t); };
     const Range all = range(first, last);
     if (all.most < all.least) return RunUse::none;
-    const bool beyond = lies_beyond(first, last, all, height, range);
+    const bool beyond = ceiling_.lies_below(first, last, all, height, range);
     return beyond ? RunUse::whole : RunUse::edges;
   }
 
@@ -775,7 +662,7 @@ class DistanceVolume {
   // the nearest border the lower envelope.
   bool insert_reach(Quadratic inverse, const Real& t0, const Real& t1, const Real& least) {
     inverse.id = static_cast<int>(reaches_.size()) - 1;
-    return add_border(inverse, t0, t1, least, [&](size_t k) { return reach(k); });
+    return ceiling_.add(inverse, t0, t1, least, [&](size_t k) { return reach(k); });
   }
   // The distance of piece k of the ceiling from the vertex.
   [[nodiscard]] Real distance_of_ceiling(size_t k, const Real& t) const {
@@ -911,18 +798,15 @@ class DistanceVolume {
   Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
-  Box around_;                            // the ring, or what is asked for of its inside
-  std::optional<RingTree> tree_;          // of the ring, if it has many edges
-  double slack_ = 0;                      // round-off of positions in boxes, m
-  double depth_ = 0;                      // no point that counts is deeper, m
-  Real highest_{};                        // no more than this is the ceiling's distance
-  std::vector<TouchingCircles> circles_;  // of the pieces of the ceiling, for features_below()
-  TouchingCircle empty_;                  // the largest circle that is known to be empty
+  Box around_;                    // the ring, or what is asked for of its inside
+  std::optional<RingTree> tree_;  // of the ring, if it has many edges
+  double slack_ = 0;              // round-off of positions in boxes, m
+  double depth_ = 0;              // no point that counts is deeper, m
   std::vector<Real> cuts_;
-  PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
-  std::vector<Reach> reaches_;                 // borders of the present vertex's cell
-  Point axis_{};                               // middle direction of the present vertex's cell
-  Real middle_{};                              // a direction inside the present part of it
+  Ceiling ceiling_;             // far end of the present cell
+  std::vector<Reach> reaches_;  // borders of the present vertex's cell
+  Point axis_{};                // middle direction of the present vertex's cell
+  Real middle_{};               // a direction inside the present part of it
 };
 
 }  // namespace apothem
