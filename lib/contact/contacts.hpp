@@ -63,6 +63,8 @@ class Contacts {
   void try_friction(const Kinematics& now, double dt);
   /// Discards the last trial update of the friction springs.
   void drop_trial();
+  /// The last trial update becomes what the contacts remember.
+  void keep_trial() { tried_ = false; }
   /// Makes the next refresh() keep the present candidates.
   void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);

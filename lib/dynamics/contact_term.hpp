@@ -76,6 +76,8 @@ class ContactTerm final : public Term {
     contacts_.drop_trial();
     contacts_.keep_search();
   }
+  /// Contacts remember what they did in the last state that was tried.
+  void keep_trial() { contacts_.keep_trial(); }
   /// Adds the sizes of the normal forces on each body, rigid ones first, N.
   void add_force_sizes(std::span<double> of_bodies) const { contacts_.add_force_sizes(of_bodies); }
   /// The resultant of what other bodies do to a deformable one, N.

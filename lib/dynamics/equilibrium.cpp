@@ -74,12 +74,12 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   extent_ = scene.extent();
 }
 
-// Friction follows the displacements since the start of the load step, in one step of 1 s.
-void Equilibrium::find_forces(State& state, const State& before) {
+// Friction follows the displacements since `slips_from_`, in one step of 1 s.
+void Equilibrium::find_forces(State& state) {
   std::ranges::fill(state.layout.of_rigid(state.f), 0.);
   std::ranges::fill(lambda_, 0.);
   for (size_t c = 0; c < displacement_.size(); ++c) {
-    displacement_[c] = state.x[c] - before.x[c] + (slip_.empty() ? 0 : slip_[c]);
+    displacement_[c] = state.x[c] - slips_from_[c] + (slip_.empty() ? 0 : slip_[c]);
   }
   PhaseTimer off;
   for (const auto& term : terms_)
@@ -282,7 +282,7 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
   LoadStep result{time};
   if (!pause_ || pause_->until != time) {
     ++state.step;
-    const Verdict verdict = newton(state, before, time, stop, result);
+    const Verdict verdict = search(state, before, time, stop, result);
     if (verdict != Verdict::failed) {
       keep(verdict == Verdict::found, result);
       return result;
@@ -354,12 +354,13 @@ LoadStep Equilibrium::find_near(State& state, Ledger& ledger, double time,
   return result;
 }
 
-// Whether a free rigid body has left the neighbourhood of the last equilibrium.
-bool Equilibrium::strays(const State& state, const State& before) const {
+// Whether a free rigid body has left the neighbourhood of the last equilibrium, whose places are
+// `from`.
+bool Equilibrium::strays(const State& state, const std::vector<double>& from) const {
   for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
     const RigidBody& body = model_.bodies[i];
     if (body.motion != Motion::free) continue;
-    const Eigen::Vector3d way = state.pose(i) - before.pose(i);
+    const Eigen::Vector3d way = state.pose(i) - Eigen::Vector3d::Map(&from[state.layout.rigid(i)]);
     const double moved = hypotenuse(way[0], way[1]) + radius()[i] * std::abs(way[2]);
     if (!(moved <= kNear * body.inradius + driven_way_)) return true;
   }
@@ -432,7 +433,7 @@ bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& st
   driven_way_ = 0;
   begin_settling(state);
   LoadStep result{state.time};
-  const Verdict verdict = newton(state, before, state.time, stop, result);
+  const Verdict verdict = search(state, before, state.time, stop, result);
   if (verdict == Verdict::stopped) throw Stopped();
   if (verdict == Verdict::found) {
     state.v = before.v;

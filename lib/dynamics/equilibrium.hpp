@@ -16,6 +16,7 @@
 namespace apothem {
 
 class ContactTerm;
+class FrictionMemory;
 
 /// Newton's method, and dynamic relaxation where that cannot be used or fails. Friction is
 /// followed from load step to load step: within one, it is a function of the displacements since
@@ -75,14 +76,20 @@ class Equilibrium {
     double done = 0;                      // share of the load step that is in equilibrium
     double step = 1;                      // to the share that is sought
     bool damped = false;                  // whether the way is one of implicit steps
+    bool growing = false;                 // whether weight grows with the shares
     double shift = 0;                     // 1/h^2 of the present one, 1/s^2
     std::int64_t iteration = 0, all = 0;  // in this share; in this load step
     std::int64_t in_step = 0;             // in this implicit step
-    std::int64_t shortened = 0;           // implicit steps that were too long
+    std::int64_t shortened = 0;           // implicit steps that were too long, one after the other
     double residual = 0, at_start = 0;    // before the last iteration; at the start of the step
+    double looked_at = 0;                 // some iterations before
+    bool in_vain = false;                 // whether it has hardly fallen since
     bool polishing = false;               // whether it goes on from an equilibrium to round-off
+    bool setting_out = false;             // whether this is the first implicit step of the share
     std::vector<double> x_done, base, x;  // of the last equilibrium; at the start of the implicit
                                           // step; of the state that is tried
+    // Whether the next iteration is the first from where the share began.
+    [[nodiscard]] bool sets_out() const { return setting_out && in_step == 0; }
     void fields(Archive& archive);
   };
   static constexpr double kNear = 0.25;  // of a body's inradius: it is still where it was
@@ -91,18 +98,26 @@ class Equilibrium {
                  LoadStep& result);
   Verdict find_share(State& state, const State& before, double time, NewtonPath& path,
                      const std::function<bool()>& stop, LoadStep& result);
-  Verdict finish_polishing(State& state, const State& before, LoadStep& result,
-                           const NewtonPath& path);
+  Verdict finish_polishing(State& state, LoadStep& result, const NewtonPath& path);
   void begin_share(const State& state, NewtonPath& path);
   static void begin_polishing(const State& state, NewtonPath& path);
-  [[nodiscard]] static bool is_stuck(const NewtonPath& path);
+  static void note_residual(double residual, NewtonPath& path);
+  [[nodiscard]] bool is_stuck(const NewtonPath& path) const;
+  [[nodiscard]] bool is_step_found(const State& state, const NewtonPath& path, double now) const;
+  [[nodiscard]] double growth_after(const NewtonPath& path) const;
   [[nodiscard]] bool is_sound(const State& state) const;
-  bool stays(const State& state, const State& before);
-  bool try_forces(State& state, const State& before);
+  bool note_departure(const State& state, const State& before);
+  bool stays(const State& state, const State& before, const NewtonPath& path);
+  Verdict search(State& state, const State& before, double time, const std::function<bool()>& stop,
+                 LoadStep& result);
+  [[nodiscard]] bool begins_unpressed(State& state, const State& before);
+  void begin_again(State& state, const State& before, const FrictionMemory& friction);
+  bool try_forces(State& state);
   bool find_tangent(const State& state);
   bool find_step(State& state, const NewtonPath& path, bool first);
   void put_on_rails();
-  bool go(State& state, const State& before, const NewtonPath& path);
+  bool go(State& state, const NewtonPath& path);
+  void keep_slips(const State& state);
   void begin_longer_step(const State& state, NewtonPath& path);
   bool begin_shorter_step(State& state, NewtonPath& path);
   double shifted_residual(const State& state, const NewtonPath& path);
@@ -114,14 +129,14 @@ class Equilibrium {
   [[nodiscard]] bool is_round_off(const State& state, const std::vector<double>& step) const;
   [[nodiscard]] double size_of_forces() const;
   void keep(bool complete, LoadStep& result);
-  [[nodiscard]] bool strays(const State& state, const State& before) const;
+  [[nodiscard]] bool strays(const State& state, const std::vector<double>& from) const;
   [[nodiscard]] double driven_way(double from, double until) const;
   void go_back(State& state, const State& before);
   void book(const State& before, const State& state, Ledger& ledger);
   LoadStep solve(State& state, const State& before, double time, const std::function<bool()>& stop);
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
-  void find_forces(State& state, const State& before);
+  void find_forces(State& state);
   void push_walls(const State& state);
   void let_slide(const State& state);
   void begin_settling(const State& state);
@@ -150,7 +165,7 @@ class Equilibrium {
   }
   [[nodiscard]] const std::vector<double>& radius() const { return lengths_.radius(); }
   [[nodiscard]] double weight(size_t coordinate) const {
-    return dofs_.weight().empty() ? 0 : dofs_.weight()[coordinate];
+    return dofs_.weight().empty() ? 0 : share_of_weight_ * dofs_.weight()[coordinate];
   }
 
   const Model& model_;
@@ -159,9 +174,11 @@ class Equilibrium {
   ContactTerm* contact_;
   double tolerance_;
   bool settling_ = false;
-  bool near_ = false;      // only an equilibrium near the last one is sought
-  double driven_way_ = 0;  // of prescribed motion in this load step, m
-  size_t first_;           // coordinate of the nodes
+  bool near_ = false;           // only an equilibrium near the last one is sought
+  bool weight_grows_ = false;   // with the shares of a load step, as if it had never acted
+  double share_of_weight_ = 1;  // that acts
+  double driven_way_ = 0;       // of prescribed motion in this load step, m
+  size_t first_;                // coordinate of the nodes
   // A rigid body that moves along one direction: a wall that holds a force, or, in a settled start,
   // a body that slides, across its velocity.
   struct Rail {
@@ -177,7 +194,8 @@ class Equilibrium {
   std::vector<double> mass_, inverse_;    // scaled; inverse 0 where held
   std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
   std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
-  std::vector<double> displacement_;      // since the start of the load step
+  std::vector<double> slips_from_;        // the places from which friction counts
+  std::vector<double> displacement_;      // since these
   std::vector<double> slip_;     // what counts as displacement in contacts besides; or none
   std::vector<double> outside_;  // loads on nodes at the last equilibrium, N
   std::optional<Pause> pause_;

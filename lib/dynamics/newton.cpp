@@ -21,13 +21,22 @@ namespace {
 constexpr int kMostIterations = 30;       // for a share of a load step
 constexpr double kLeastLoadShare = 1e-4;  // of a load step
 // The same where a body has left its place: a shorter share leads it the same way.
-constexpr double kLeastShareOfDeparted = 0.1;
-constexpr double kFalling = 0.1;  // iterations that reduce the residual more are worth it
+constexpr double kLeastShareOfDeparted = 0.1, kLeastShareOfWeight = 0.01;
+constexpr double kUnpressed = 1e-3;  // of the weight: contact forces that do not carry it
+constexpr double kFalling = 0.1;     // iterations that reduce the residual more are worth it
 // Of the implicit steps by which contacts are found.
 constexpr int kMostInStep = 20, kMostOfAll = 2000, kMostHalvings = 6, kMostShortened = 12,
               kMostShortenedNear = 25, kEasy = 4;
 constexpr double kStepTolerance = 1e-3;  // of the residual at the start of the step
 constexpr double kLonger = 3, kShorter = 5;
+constexpr double kGivenWay = 1e-3;  // of the residual once prescribed motion has come
+// Of the residual, between looks at an implicit step.
+constexpr double kProgress = 0.9;
+constexpr int kLookEvery = 10, kFirstLook = 2;
+// The same where bodies settle. They may have to go a long way, over many steps: these are found
+// less exactly, and their length follows from the iterations that they take.
+constexpr int kMostInSettling = 10, kMostOfSettling = 10000, kEasySettling = 3, kFairSettling = 6;
+constexpr double kSettlingTolerance = .1, kLittleLonger = 1.5;
 constexpr double kLost = 3;          // of the scene's size, beyond what prescribed motion does
 constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;       // of a rigid body's inradius
@@ -43,10 +52,11 @@ constexpr double kPivotNoise = 1e-11;
 }  // namespace
 
 void Equilibrium::NewtonPath::fields(Archive& archive) {
-  archive("until", until)("done", done)("step", step)("damped", damped)("shift", shift);
+  archive("until", until)("done", done)("step", step)("damped", damped)("growing", growing)("shift",
+                                                                                            shift);
   archive("iteration", iteration)("all", all)("in_step", in_step)("shortened", shortened);
-  archive("residual", residual)("at_start", at_start);
-  archive("polishing", polishing);
+  archive("residual", residual)("at_start", at_start)("looked_at", looked_at)("in_vain", in_vain);
+  archive("polishing", polishing)("setting_out", setting_out);
   archive.sized("x_done", x_done).sized("base", base).sized("x", x);
 }
 
@@ -149,9 +159,9 @@ void Equilibrium::put_on_rails() {
 }
 
 // The forces of a state that is tried; false if it is out of the range of the method.
-bool Equilibrium::try_forces(State& state, const State& before) {
+bool Equilibrium::try_forces(State& state) {
   try {
-    find_forces(state, before);
+    find_forces(state);
     return true;
   } catch (const Unstable&) {
     return false;
@@ -159,10 +169,10 @@ bool Equilibrium::try_forces(State& state, const State& before) {
 }
 
 // After the last iteration from an equilibrium to round-off, which was worse than those before.
-Equilibrium::Verdict Equilibrium::finish_polishing(State& state, const State& before,
-                                                   LoadStep& result, const NewtonPath& path) {
+Equilibrium::Verdict Equilibrium::finish_polishing(State& state, LoadStep& result,
+                                                   const NewtonPath& path) {
   state.x = path.base;
-  return try_forces(state, before) && reached(state, result) ? Verdict::found : Verdict::failed;
+  return try_forces(state) && reached(state, result) ? Verdict::found : Verdict::failed;
 }
 
 // One share of a load step, which ends at `time`. With a shift it is found in steps of growing h.
@@ -172,39 +182,37 @@ Equilibrium::Verdict Equilibrium::find_share(State& state, const State& before, 
   state.time = time;
   bool known = false;  // whether the forces are those of the present places
   for (;; ++path.iteration, ++path.all) {
-    if (path.all > kMostOfAll) return Verdict::failed;
-    bool fine = known || try_forces(state, before);
+    if (path.all > (settling_ ? kMostOfSettling : kMostOfAll)) return Verdict::failed;
+    bool fine = known || try_forces(state);
     if (path.iteration == 0) begin_share(state, path);
     double now = fine ? shifted_residual(state, path) : HUGE_VAL;
     fine = fine && std::isfinite(now);
-    if (fine && path.iteration > 0) {
+    if (fine && !path.sets_out()) {
       const bool good = reached(state, result);
       if (path.polishing && !(now < kFalling * path.residual)) {
         if (good && now <= path.residual) return Verdict::found;
-        return finish_polishing(state, before, result, path);
+        return finish_polishing(state, result, path);
       }
       if (good) {
         begin_polishing(state, path);
         now = shifted_residual(state, path);
       }
     }
-    if (fine && path.damped && !path.polishing && path.in_step > 0 &&
-        now <= std::max(kStepTolerance * path.at_start, rounded_residual(state))) {
-      if (!stays(state, before)) return Verdict::failed;
+    if (fine && is_step_found(state, path, now)) {
+      if (!stays(state, before, path)) return Verdict::failed;
       begin_longer_step(state, path);
       now = shifted_residual(state, path);
     }
-    if (fine && path.in_step == 0) path.at_start = now;
-    if (fine) path.residual = now;
-    fine = fine && !is_stuck(path) && find_step(state, path, path.iteration == 0);
+    if (fine) note_residual(now, path);
+    fine = fine && !is_stuck(path) && find_step(state, path, path.sets_out());
     if (!fine) {
-      if (path.polishing) return finish_polishing(state, before, result, path);
+      if (path.polishing) return finish_polishing(state, result, path);
       if (!path.damped || !begin_shorter_step(state, path)) return Verdict::failed;
       known = false;
       continue;
     }
+    known = go(state, path);
     ++path.in_step;
-    known = go(state, before, path);
     if (stop && stop()) {
       ++path.iteration, ++path.all;
       return Verdict::stopped;
@@ -224,6 +232,7 @@ bool Equilibrium::is_sound(const State& state) const {
 
 void Equilibrium::begin_share(const State& state, NewtonPath& path) {
   path.polishing = false;
+  path.setting_out = true;
   path.base = state.x;
   if (path.damped) path.shift = first_shift();
   path.in_step = path.shortened = 0;
@@ -231,20 +240,60 @@ void Equilibrium::begin_share(const State& state, NewtonPath& path) {
 
 void Equilibrium::begin_polishing(const State& state, NewtonPath& path) {
   path.polishing = true;
+  path.setting_out = false;
   path.base = state.x;
   path.shift *= kPolish;
   path.in_step = 0;
 }
 
-// Whether a step has taken its iterations.
-bool Equilibrium::is_stuck(const NewtonPath& path) {
-  return path.in_step == (path.damped ? kMostInStep : kMostIterations);
+// Prescribed motion comes with the first iteration of a share, and brings forces that are mostly
+// gone once bodies have given way.
+void Equilibrium::note_residual(double residual, NewtonPath& path) {
+  if (path.in_step == 0) {
+    path.at_start = residual;
+  } else if (path.in_step == 1 && path.setting_out) {
+    path.at_start = std::max(path.at_start, kGivenWay * residual);
+  }
+  if (path.in_step % kLookEvery == kFirstLook) {
+    path.in_vain = path.in_step > kFirstLook && !(residual < kProgress * path.looked_at);
+    path.looked_at = residual;
+  }
+  path.residual = residual;
 }
 
-// Whether the bodies are still where an equilibrium may be, at the end of an implicit step. What
-// the first body does that leaves its neighbourhood is noted while its contacts tell.
-bool Equilibrium::stays(const State& state, const State& before) {
-  if (near_) return !strays(state, before);
+// Whether a step has taken its iterations, or goes round in circles.
+bool Equilibrium::is_stuck(const NewtonPath& path) const {
+  if (!path.damped) return path.in_step == kMostIterations;
+  if (!path.polishing && path.in_step > kFirstLook && path.in_vain) return true;
+  return path.in_step == (settling_ && !path.polishing ? kMostInSettling : kMostInStep);
+}
+
+// Whether this is the end of an implicit step, where the residual is `now`.
+bool Equilibrium::is_step_found(const State& state, const NewtonPath& path, double now) const {
+  if (!path.damped || path.polishing || path.in_step == 0) return false;
+  const double tolerance = settling_ ? kSettlingTolerance : kStepTolerance;
+  return now <= std::max(tolerance * path.at_start, rounded_residual(state));
+}
+
+// By how much the next implicit step is longer. Near a limit of the loads the way bends with every
+// contact that begins to slip: a step that was hard to find is not followed by a longer one.
+double Equilibrium::growth_after(const NewtonPath& path) const {
+  if (settling_) {
+    if (path.in_step <= kEasySettling) return kLonger;
+    return path.in_step <= kFairSettling ? kLittleLonger : 1;
+  }
+  return !near_ || path.in_step <= kEasy ? kLonger : 1;
+}
+
+// Whether the bodies are still where an equilibrium may be, at the end of an implicit step, while
+// their contacts tell what they do.
+bool Equilibrium::stays(const State& state, const State& before, const NewtonPath& path) {
+  const bool lost = !note_departure(state, before);
+  return near_ ? !strays(state, path.x_done) : !lost;
+}
+
+// Notes what the first body does that leaves its neighbourhood. False if a body is lost.
+bool Equilibrium::note_departure(const State& state, const State& before) {
   const auto bodies = static_cast<BodyIndex>(body_loads_.size());
   double farthest = 0;
   BodyIndex mover = -1;
@@ -266,25 +315,32 @@ bool Equilibrium::stays(const State& state, const State& before) {
 
 // Goes the step; where contacts may begin or end it is halved until the residual falls. Returns
 // whether the forces there are known.
-bool Equilibrium::go(State& state, const State& before, const NewtonPath& path) {
+bool Equilibrium::go(State& state, const NewtonPath& path) {
   double share = path.damped ? shortened(step_) : 1;
   const double growth = model_.deformables.empty() ? 1 : kMeshGrowth;
   const std::vector<double> from = state.x;
   for (int halved = 0;; ++halved, share /= 2) {
     for (size_t c = 0; c < step_.size(); ++c) state.x[c] = from[c] + share * step_[c];
-    if (!path.damped || path.polishing || path.iteration == 0) return false;
-    const bool fine = try_forces(state, before);
+    if (!path.damped || path.polishing || path.sets_out()) return false;
+    const bool fine = try_forces(state);
     if (halved == kMostHalvings) return fine;
     if (fine && shifted_residual(state, path) < growth * path.residual) return true;
   }
 }
 
+// Where bodies settle friction follows their way.
+void Equilibrium::keep_slips(const State& state) {
+  if (contact_) contact_->keep_trial();
+  slips_from_ = state.x;
+}
+
 void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
   path.base = state.x;
-  // Near a limit of the loads the way bends with every contact that begins to slip: a step that
-  // was hard to find is not followed by a longer one.
-  if (!near_ || path.in_step <= kEasy) path.shift /= kLonger * kLonger;
+  if (settling_) keep_slips(state);
+  const double growth = growth_after(path);
+  path.shift /= growth * growth;
   path.in_step = 0;
+  path.setting_out = false;
   if (!near_) path.shortened = 0;
 }
 
@@ -292,7 +348,7 @@ void Equilibrium::begin_longer_step(const State& state, NewtonPath& path) {
 bool Equilibrium::begin_shorter_step(State& state, NewtonPath& path) {
   if (++path.shortened > (near_ ? kMostShortenedNear : kMostShortened)) return false;
   state.x = path.base;
-  dofs_.place_driven(state);
+  if (!path.setting_out) dofs_.place_driven(state);
   path.shift *= kShorter * kShorter;
   path.in_step = 0;
   return true;
@@ -303,12 +359,14 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   // What tells round-off depends on what is near at the start of the load step, and on nothing
   // else.
   if (contact_) contact_->forget_search();
-  find_forces(state, before);
+  slips_from_ = before.x;
+  find_forces(state);
   find_masses(state);
   NewtonPath path;
   departed_ = -1;
   path.until = time;
   path.damped = contact_ != nullptr;
+  path.growing = weight_grows_;
   path.x_done = state.x;
   if (newton_pause_ && newton_pause_->until == time) {
     path = std::move(*newton_pause_);
@@ -318,6 +376,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
   for (;;) {
     const double share = std::min(1., path.done + path.step);
     const double at = share < 1 ? before.time + share * (time - before.time) : time;
+    share_of_weight_ = weight_grows_ ? share : 1;
     Verdict verdict = find_share(state, before, at, path, stop, result);
     if (verdict == Verdict::found && !is_sound(state)) verdict = Verdict::failed;
     if (verdict == Verdict::stopped) {
@@ -325,7 +384,7 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
       newton_pause_ = std::move(path);
       return Verdict::stopped;
     }
-    if (verdict == Verdict::failed && near_) return verdict;
+    if (verdict == Verdict::failed && near_ && !weight_grows_) return verdict;
     path.iteration = 0;
     if (verdict == Verdict::found) {
       if (share == 1) break;
@@ -337,12 +396,60 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
     }
     state.x = path.x_done;
     path.step = (share - path.done) / 2;
-    const double least = departed_ >= 0 ? kLeastShareOfDeparted : kLeastLoadShare;
-    if (path.step < least || time == before.time || !tangent_known_) return Verdict::failed;
+    const double least = departed_ < 0   ? kLeastLoadShare
+                         : weight_grows_ ? kLeastShareOfWeight
+                                         : kLeastShareOfDeparted;
+    const bool lost = weight_grows_ && departed_ >= 0 && departure_.is_lost;
+    const bool whole = time == before.time && !weight_grows_;
+    if (path.step < least || lost || whole || !tangent_known_) return Verdict::failed;
   }
   result.iterations = path.all;
   result.negative_pivots = negative_pivots(state);
   return Verdict::found;
+}
+
+// Whether the contacts at the start do not carry the weight of the bodies.
+bool Equilibrium::begins_unpressed(State& state, const State& before) {
+  if (!contact_ || dofs_.weight().empty()) return false;
+  slips_from_ = before.x;
+  if (!try_forces(state)) return false;
+  std::vector<double> pressed(body_loads_.size(), 0);
+  contact_->add_force_sizes(pressed);
+  double forces = 0, weights = 0;
+  for (const double size : pressed) forces += size;
+  for (const double w : dofs_.weight()) weights += std::abs(w);
+  return forces < kUnpressed * weights;
+}
+
+void Equilibrium::begin_again(State& state, const State& before, const FrictionMemory& friction) {
+  const std::int64_t step = state.step;
+  state = before;
+  state.step = step;
+  if (!contact_) return;
+  contact_->drop_trial();
+  contact_->inherit(friction);
+  contact_->refresh(state);
+}
+
+// Where weight has never acted, the equilibrium that is sought is the one to which the bodies come
+// from where they are, while it grows. If there is none near, it is any that they come to.
+Equilibrium::Verdict Equilibrium::search(State& state, const State& before, double time,
+                                         const std::function<bool()>& stop, LoadStep& result) {
+  const FrictionMemory friction = contact_ ? contact_->contacts().friction() : FrictionMemory();
+  const bool paused = newton_pause_ && newton_pause_->until == time;
+  const bool grows =
+      paused ? newton_pause_->growing : before.step == 0 && begins_unpressed(state, before);
+  if (grows) {
+    near_ = weight_grows_ = true;
+    const Verdict verdict = newton(state, before, time, stop, result);
+    near_ = weight_grows_ = false;
+    share_of_weight_ = 1;
+    if (verdict != Verdict::failed) return verdict;
+    begin_again(state, before, friction);
+  }
+  const Verdict verdict = newton(state, before, time, stop, result);
+  if (verdict == Verdict::failed) begin_again(state, before, friction);
+  return verdict;
 }
 
 // Whether an iteration that leads over `step` changes no more than the rounding of places.
@@ -370,18 +477,18 @@ bool Equilibrium::step(State& state, const State& before, const std::vector<doub
   path.damped = true;
   path.shift = 1 / (h * h);
   path.base = base;
+  slips_from_ = before.x;
   double size = 0;
   bool known = false;
   for (int i = 0; i < kMostInStep; ++i) {
-    if (!known) find_forces(state, before);
+    if (!known) find_forces(state);
     path.residual = shifted_residual(state, path);
     if (!std::isfinite(path.residual)) return false;
     size = std::max(size, size_of_forces());
     if (path.residual <= kStepResidual * size) return true;
     if (i > 0 && is_round_off(state, step_)) return true;
-    path.iteration = 1;
     if (!find_step(state, path, false)) return false;
-    known = go(state, before, path);
+    known = go(state, path);
     ++iterations_;
   }
   return false;

@@ -151,6 +151,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
   LoadStep result{time};
   result.relaxed = true;
   std::int64_t step = 0;
+  slips_from_ = before.x;
   ++state.step;
   if (pause_ && pause_->until == time) {
     state.time = pause_->time, state.x = pause_->x, state.v = pause_->v;
@@ -168,7 +169,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
       dofs_.place_driven(state);
       dofs_.follow(state);
     }
-    find_forces(state, before);
+    find_forces(state);
     if (step % kRenewedEvery == 0 || searches() != searches_) {
       find_masses(state);
     } else {
