@@ -275,8 +275,7 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
   return balanced && residual <= tolerance_ * loads_now_ + kNoise * std::sqrt(sum_noise_);
 }
 
-// By Newton's method; by relaxation where a term does not know its tangent, and where the method
-// fails although every body is where it was.
+// By Newton's method; by relaxation where a term does not know its tangent.
 LoadStep Equilibrium::solve(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   LoadStep result{time};
@@ -287,18 +286,21 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
       keep(verdict == Verdict::found, result);
       return result;
     }
-    if (tangent_known_ && departed_ >= 0) refuse(state, result);
+    if (tangent_known_) refuse(state, result);
     state = before;
   }
   return relax(state, before, time, stop);
 }
 
-// Newton's method has found nothing, because a body has left its place.
+// Newton's method has found nothing. Where a body has left its place that is the reason.
 void Equilibrium::refuse(const State& state, const LoadStep& result) const {
-  const bool rigid = departed_ < static_cast<BodyIndex>(model_.bodies.size());
+  const auto rigid = static_cast<BodyIndex>(model_.bodies.size());
+  const std::string what =
+      departed_ >= 0 ? departure_.words
+                     : fmt::format("the search for one has come to an end where {}", at_end_.words);
   throw Unstable(fmt::format("no equilibrium at t = {:.9g} s (load step {}): {}; {}", result.time,
-                             state.step, departure_.words, advice()),
-                 rigid ? departed_ : -1);
+                             state.step, what, advice()),
+                 departed_ >= 0 && departed_ < rigid ? departed_ : -1);
 }
 
 // What helps where no equilibrium is found.
@@ -426,22 +428,6 @@ void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   if (!solve(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
-}
-
-bool Equilibrium::settle_by_newton(State& state, const std::function<bool()>& stop) {
-  const State before = state;
-  driven_way_ = 0;
-  begin_settling(state);
-  LoadStep result{state.time};
-  const Verdict verdict = search(state, before, state.time, stop, result);
-  if (verdict == Verdict::stopped) throw Stopped();
-  if (verdict == Verdict::found) {
-    state.v = before.v;
-    return true;
-  }
-  if (tangent_known_ && departed_ >= 0 && departure_.is_lost) refuse(state, result);
-  go_back(state, before);
-  return false;
 }
 
 }  // namespace apothem

@@ -43,9 +43,6 @@ class Equilibrium {
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
   void settle(State& state, const std::function<bool()>& stop);
-  /// The same by Newton's method alone. Returns false, with the state as it was, if that finds
-  /// none. Throws Unstable if a body slides or falls.
-  bool settle_by_newton(State& state, const std::function<bool()>& stop);
   /// A step of h (s) in time, from `before` to state.time: finds the places x with
   /// M (x - base) / h^2 = f(x), from those of `state` on; `base` are the places that forces do not
   /// reach. Driven coordinates stay where they are in `state`. Afterwards contacts remember the
@@ -107,6 +104,10 @@ class Equilibrium {
   [[nodiscard]] double growth_after(const NewtonPath& path) const;
   [[nodiscard]] bool is_sound(const State& state) const;
   bool note_departure(const State& state, const State& before);
+  [[nodiscard]] BodyIndex farthest_mover(const State& state, const State& before) const;
+  [[nodiscard]] Departure departure_of(BodyIndex body, const State& state,
+                                       const State& before) const;
+  void note_end(State& state, const State& before, const NewtonPath& path, const LoadStep& result);
   bool stays(const State& state, const State& before, const NewtonPath& path);
   Verdict search(State& state, const State& before, double time, const std::function<bool()>& stop,
                  LoadStep& result);
@@ -211,6 +212,7 @@ class Equilibrium {
   bool tangent_known_ = true;   // false if a term does not know its tangent
   Departure departure_;         // what the first body does that leaves its place
   BodyIndex departed_ = -1;     // this body
+  Departure at_end_;            // where the search has ended: the body that had moved farthest
   double loads_ = 0;            // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
   double loads_now_ = 0;                // the same with the state that is tried

@@ -294,23 +294,54 @@ bool Equilibrium::stays(const State& state, const State& before, const NewtonPat
 
 // Notes what the first body does that leaves its neighbourhood. False if a body is lost.
 bool Equilibrium::note_departure(const State& state, const State& before) {
-  const auto bodies = static_cast<BodyIndex>(body_loads_.size());
-  double farthest = 0;
-  BodyIndex mover = -1;
-  for (BodyIndex b = 0; b < bodies; ++b) {
-    if (!is_free(model_, b)) continue;
-    const double part = motion_of(model_, state, before, b).most() / inradius_of(model_, b);
-    if (part > farthest) farthest = part, mover = b;
-  }
+  const BodyIndex mover = farthest_mover(state, before);
   if (mover < 0) return true;
   const double way = motion_of(model_, state, before, mover).most();
   if (departed_ < 0 && way > kNear * inradius_of(model_, mover) + driven_way_) {
     departed_ = mover;
-    departure_ = describe_departure(
-        model_, state, before, mover,
-        contact_ ? contact_->contacts().records() : std::vector<ContactRecord>());
+    departure_ = departure_of(mover, state, before);
   }
   return way <= kLost * extent_ + driven_way_;
+}
+
+// The free body that has moved farthest, in parts of its inradius; -1 if none has moved.
+BodyIndex Equilibrium::farthest_mover(const State& state, const State& before) const {
+  double farthest = 0;
+  BodyIndex mover = -1;
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
+    if (!is_free(model_, b)) continue;
+    const double part = motion_of(model_, state, before, b).most() / inradius_of(model_, b);
+    if (part > farthest) farthest = part, mover = b;
+  }
+  return mover;
+}
+
+Departure Equilibrium::departure_of(BodyIndex body, const State& state, const State& before) const {
+  return describe_departure(
+      model_, state, before, body,
+      contact_ ? contact_->contacts().records() : std::vector<ContactRecord>());
+}
+
+// Notes where the search ends that has found nothing: at the last implicit step.
+void Equilibrium::note_end(State& state, const State& before, const NewtonPath& path,
+                           const LoadStep& result) {
+  state.x = path.base;
+  const bool fine = try_forces(state);
+  for (const RigidIndex wall : walls_) {
+    if (!(motion_of(model_, state, before, wall).most() > kNear * model_.bodies[wall].inradius))
+      continue;
+    at_end_.words =
+        fmt::format("the servo wall \"{}\" goes on: what it presses on does not bear its force",
+                    model_.bodies[wall].name);
+    return;
+  }
+  const BodyIndex mover = farthest_mover(state, before);
+  if (fine && mover >= 0) {
+    at_end_ = departure_of(mover, state, before);
+    return;
+  }
+  at_end_.words = fmt::format("the forces on \"{}\" are out of balance",
+                              model_.name_of(std::max(result.unbalanced, 0)));
 }
 
 // Goes the step; where contacts may begin or end it is halved until the residual falls. Returns
@@ -401,7 +432,15 @@ Equilibrium::Verdict Equilibrium::newton(State& state, const State& before, doub
                                          : kLeastShareOfDeparted;
     const bool lost = weight_grows_ && departed_ >= 0 && departure_.is_lost;
     const bool whole = time == before.time && !weight_grows_;
-    if (path.step < least || lost || whole || !tangent_known_) return Verdict::failed;
+    if (!tangent_known_) return Verdict::failed;
+    if (path.step >= least && !lost && !whole) continue;
+    if (path.damped) {
+      if (!near_) note_end(state, before, path, result);
+      return Verdict::failed;
+    }
+    // What lies beyond a limit of the loads is found on the way that the bodies go.
+    path.damped = true;
+    path.step = 1 - path.done;
   }
   result.iterations = path.all;
   result.negative_pivots = negative_pivots(state);

@@ -13,7 +13,6 @@
 #include "lib/dynamics/implicit.hpp"
 #include "lib/dynamics/loads.hpp"
 #include "lib/dynamics/mass_damping.hpp"
-#include "lib/dynamics/settle.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/model/pairs.hpp"
 
@@ -65,8 +64,11 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   }
   try {
     find_forces(state_.v, 0);
-    if (time.settled) settle(stop);
-    finish_look();
+    if (time.settled) {
+      settle(stop);
+    } else {
+      finish_look();
+    }
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
   }
@@ -345,24 +347,15 @@ void Simulation::settle(const std::function<bool()>& stop) {
                      "time/start", -1);
   }
   Equilibrium equilibrium(model_, dofs_, terms_, contact_, kSettled);
-  bool settled = true;
   try {
-    if (model_.deformables.empty()) {
-      settled = equilibrium.settle_by_newton(state_, stop);
-    } else {
-      equilibrium.settle(state_, stop);
-    }
+    equilibrium.settle(state_, stop);
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "time/start", -1);
   }
-  if (!settled) {  // Bodies of their own masses may still come to rest, as in tall stacks.
-    apothem::settle(
-        {model_, dofs_, state_, lambda_, step_choice().stability},
-        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt, 0, true); },
-        stop);
-  }
   find_forces(state_.v, 0);
   for (const auto& term : terms_) term->start_ledger();
+  finish_look();
+  start_ledger();
 }
 
 void Simulation::watch(bool always) {

@@ -57,6 +57,10 @@ class Simulation {
   /// be trusted.
   void step(double horizon = HUGE_VAL);
 
+  /// Brings all bodies to rest under their loads before the first step, as the constructor does
+  /// where the settings say so. Throws Unrunnable if they find no equilibrium, and Stopped.
+  void settle(const std::function<bool()>& stop);
+
   /// Lets bodies leave, and others come with the velocities of their model. What that does to
   /// energies and momenta is booked as work and impulses from outside.
   void change_population(std::span<const BodyIndex> leave, std::span<const BodyIndex> come);
@@ -156,7 +160,6 @@ class Simulation {
   [[nodiscard]] bool needs_forces_before() const;
   bool finish_contact(double dt);
   void finish_look();
-  void settle(const std::function<bool()>& stop);
   void watch(bool always = false);
   void look_at_energy(bool last);
   [[noreturn]] void refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const;

@@ -71,17 +71,13 @@ void OtherRun::load(const std::string& file) {
 }
 
 Beginning OtherRun::move_into(Scene& scene) {
-  if (scene.time.settled) {
-    throw scene.error_at(
-        "/time/start", "finds a start of its own; leave it out to begin with another run's state");
-  }
   Inheritance found = inheritance(record_, state_, scene.model);
   if (found.starts.empty()) {
     throw SceneError(
         beginning_.folder,
         fmt::format("has no body of the same name and shape as one of {}", scene.file));
   }
-  if (scene.time.statics) {  // nothing moves there
+  if (scene.time.statics || scene.time.settled) {  // nothing moves there
     for (BodyStart& start : found.starts) std::ranges::fill(start.v, 0.);
   }
   begin_at(scene.model, found.starts);

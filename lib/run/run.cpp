@@ -129,7 +129,15 @@ HistoryWriter::Parts Run::start() {
   stiffen();
   simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene,
                                 settings_.stop_if);
-  if (other) other->hand_contacts_to(*simulation_);
+  if (other) {
+    other->hand_contacts_to(*simulation_);
+    if (scene_.time.settled) settle(scene_, *simulation_, settings_.stop_if);
+  }
+  if (scene_.time.settled) {
+    if (std::string sentence = describe_settling(scene_, *simulation_); !sentence.empty()) {
+      warn(std::move(sentence));
+    }
+  }
   const std::vector<PairDepth> overlaps = simulation_->overlaps();
   if (!other && !overlaps.empty() && overlaps.front().share > kSmallOverlap) {
     warn("bodies overlap at the start: " + describe_overlaps(*simulation_));

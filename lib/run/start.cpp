@@ -34,6 +34,11 @@ void refuse_overlaps(const Scene& scene, const Simulation& simulation) {
                   describe_overlaps(simulation)));
 }
 
+[[noreturn]] void refuse(const Scene& scene, const Unrunnable& error) {
+  throw scene.error_at(error.body() >= 0 ? place_of(scene, error.body()) : "/" + error.key(),
+                       error.what());
+}
+
 // From flat to cornered, where there is a difference.
 std::string depth_text(const Model& model, const ExpectedDepth& e) {
   const std::string corner =
@@ -47,19 +52,47 @@ std::string depth_text(const Model& model, const ExpectedDepth& e) {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start,
                                             const std::function<bool()>& stop) {
   TimeSettings time = scene.time;
-  if (start == Start::checkpoint) time.settled = false;
+  if (start != Start::scene) time.settled = false;
   std::unique_ptr<Simulation> simulation;
   try {
     simulation =
         std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads, stop);
   } catch (const Unrunnable& error) {
-    throw scene.error_at(error.body() >= 0 ? place_of(scene, error.body()) : "/" + error.key(),
-                         error.what());
+    refuse(scene, error);
   }
   if (start == Start::scene && !time.settled && !scene.model.contact.accepts_overlaps) {
     refuse_overlaps(scene, *simulation);
   }
   return simulation;
+}
+
+void settle(const Scene& scene, Simulation& simulation, const std::function<bool()>& stop) {
+  try {
+    simulation.settle(stop);
+  } catch (const Unrunnable& error) {
+    refuse(scene, error);
+  }
+}
+
+std::string describe_settling(const Scene& scene, const Simulation& simulation) {
+  double most = 1;
+  std::string text;
+  const auto note = [&](const std::string& name, double way, double inradius) {
+    if (!(way > most * inradius)) return;
+    most = way / inradius;
+    text = fmt::format(
+        "\"{}\" had to move by {:.3g} m, {:.3g} times its inradius, to come to rest at the start: "
+        "it fell, tipped over or sank; draw bodies where they are to lie, or let them fall in a "
+        "run without \"start\" and begin with that by --from",
+        name, way, most);
+  };
+  const State& state = simulation.state();
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    const RigidBody& body = scene.model.bodies[i];
+    if (body.motion != Motion::free) continue;
+    note(body.name, (Vec2(state.pose(i).head<2>()) - body.position).norm(), body.inradius);
+  }
+  return text;
 }
 
 std::string describe_overlaps(const Simulation& simulation) {

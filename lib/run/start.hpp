@@ -22,6 +22,12 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads,
                                             Start start = Start::scene,
                                             const std::function<bool()>& stop = {});
 
+/// Lets the bodies of a scene settle that begin where another run has left them. Throws SceneError.
+void settle(const Scene& scene, Simulation& simulation, const std::function<bool()>& stop);
+
+/// If the settled start has moved a body by more than its inradius: which, and how far.
+std::string describe_settling(const Scene& scene, const Simulation& simulation);
+
 /// Overlaps of bodies at the start that pass for touching, of the smaller inradius of the two.
 inline constexpr double kSmallOverlap = 1e-3;
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "lib/solver/block_factors.hpp"
+#include "lib/solver/frontal_factors.hpp"
 
 namespace apothem {
 namespace {
@@ -31,8 +31,8 @@ struct LinearSolver::Factors {
   std::vector<std::pair<std::int32_t, std::int32_t>> places;
   std::vector<double*> sum_of, diagonal_of, spare_of;
   bool symmetric = true, points = false;
-  BlockFactors<3> of_bodies;  // of scenes without nodes
-  BlockFactors<2> of_points;  // of others, where the angle of a body is a block of its own
+  FrontalFactors<3> of_bodies;  // of scenes without nodes
+  FrontalFactors<2> of_points;  // of others, where the angle of a body is a block of its own
   std::vector<double> parts;
 
   template <class F>

@@ -1,5 +1,5 @@
 // Linear systems of sparse tangents: A = K + D with a diagonal D >= 0, in the coordinates that can
-// move. They are factorised in blocks (block_factors.hpp), symmetric ones as L D L^T, whose
+// move. They are factorised in blocks (frontal_factors.hpp), symmetric ones as L D L^T, whose
 // pivots tell stability (the number of negative ones is that of negative eigenvalues, Sylvester's
 // law of inertia).
 #pragma once

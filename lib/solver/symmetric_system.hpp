@@ -1,6 +1,6 @@
 // Private header: a symmetric sparse matrix K in the coordinates that move, with the factors of
 // K + D for diagonals D. They are Eigen's L D L^T of single entries: a body that nothing holds has
-// pivots near zero, which the inverses of blocks (block_factors.hpp) do not bear.
+// pivots near zero, which the inverses of blocks (frontal_factors.hpp) do not bear.
 #pragma once
 
 #include <Eigen/SparseCholesky>

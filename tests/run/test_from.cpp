@@ -250,14 +250,38 @@ TEST_CASE("a state that is not there is refused, with the time that is", "[run][
   CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "first"}),
                     Catch::Contains("is damaged"));
   write_file(folder / "first/final.json", good);
-  const Scene settled = scene_of(
-      folder,
-      R"({ "materials": { "rock": { "density": 2000 } }, "contact": { "normal_stiffness": 1e9 },
-    "bodies": [ { "name": "block", "material": "rock", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] },
-                { "name": "b", "material": "rock", "motion": "fixed", "polygon": [[5, 5], [6, 5], [5, 6]] } ],
-    "time": { "end": 1, "start": "settled" } })");
-  CHECK_THROWS_WITH(Run(settled, RunSettings{.folder = "", .from = folder / "first"}),
-                    Catch::Contains("/time/start: finds a start of its own"));
+}
+
+TEST_CASE("a settled start may begin with another run", "[from]") {
+  const Folder folder;
+  const auto text = [](const char* stiffness, const char* time) {
+    std::string bodies;
+    for (const char* ring :
+         {"[[0, 0], [1, 0], [1, 0.5], [0, 0.5]]", "[[0.1, 0.502], [0.8, 0.502], [0.5, 1.1]]"}) {
+      bodies += fmt::format(R"(, {{ "name": "block {}", "material": "rock", "polygon": {} }})",
+                            bodies.empty() ? 1 : 2, ring);
+    }
+    return fmt::format(
+        R"({{ "gravity": [1, -9.81], "materials": {{ "rock": {{ "density": 2000 }} }},
+    "contact": {{ "normal_stiffness": {}, "friction": {{ "coefficient": 0.5 }} }},
+    "bodies": [ {{ "name": "floor", "material": "rock", "motion": "fixed",
+                  "polygon": [[-5, -1], [5, -1], [5, 0], [-5, 0]] }}{} ],
+    "time": {} }})",
+        stiffness, bodies, time);
+  };
+  const Scene first = scene_of(folder, text("1e6", R"({ "end": 0.05 })"));
+  Run fall(first, RunSettings{.folder = folder / "first"});
+  fall.run();
+  CHECK(std::abs(fall.state().pose_rate(2)[1]) > 1e-3);  // not at rest
+  const Scene scene = scene_of(folder, text("1e9", R"({ "end": 1e-4, "start": "settled" })"));
+  const Run run(scene, RunSettings{.folder = "", .from = folder / "first"});
+  for (RigidIndex i = 1; i <= 2; ++i) {
+    const double mass = scene.model.bodies[i].mass;
+    CHECK(run.state().force(i)[0] == Approx(-mass).epsilon(1e-6));
+    CHECK(run.state().force(i)[1] == Approx(mass * 9.81).epsilon(1e-6));
+    CHECK(run.state().pose_rate(i).norm() == 0);
+    CHECK((run.state().pose(i) - fall.state().pose(i)).norm() < .1);
+  }
 }
 
 namespace {
