@@ -182,7 +182,8 @@ TEST_CASE("a sweep runs all combinations and writes its tables", "[sweep]") {
 }
 
 TEST_CASE("runs of a scene that has changed are done anew", "[sweep][slow]") {
-  const Pull pull{.varied = kPoisson};
+  Pull pull;
+  pull.varied = kPoisson;
   REQUIRE(pull.sweep().code == 0);
   const auto before = times_of(pull.study);
   std::string text = kPulledCells;
