@@ -1,10 +1,12 @@
 """Fresh numbers: commands, each run once, and what expressions may ask of what they leave."""
+import atexit
 import csv as csv_module
 import json
 import math
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -53,6 +55,8 @@ class Fresh:
     def __init__(self, root, commands, slow, options):
         self.root, self.commands, self.slow, self.options = root, commands, slow, options
         self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
+        if not options.keep:
+            atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
         self.done, self.files, self.speed = {}, {}, None
         self.asked = set()  # commands that the expressions since the last `asked.clear()` have used
 
