@@ -29,8 +29,8 @@ Expressions may use the methods of `Fresh` in docs/fresh_numbers.py: `out` for w
 unit of the text), "below" (a bound), "below x10" (at most ten times as much: round-off); without it by one unit of the
 last digit that is stated. Commands are in `commands`, and the document names them by `named`; scenes need none,
 `apothem run` makes them. A command is run once, when a number needs it; with --quick only those that have the key `quick`,
-which may be a shorter command. {NAME} in a command is the folder of another one's results, {program} is apothem. A
-command of `data` needs no program that has to be built.
+which may be a shorter command; --jobs runs so many of these at a time, first of all. {NAME} in a command is the folder of
+another one's results, {program} is apothem. A command of `data` needs no program that has to be built.
 
 Times are compared as if on the machine of the documents: they are multiplied by the rate of its arithmetic now over
 the one that the documents state (`machine`), both measured by the benchmark. With --times all of them, and all ratios
@@ -372,6 +372,8 @@ class Checker:
         document.given.update(entry["columns"])
 
     def check(self):
+        if self.options.jobs > 1:
+            self.fresh.run_together(self.options.jobs)
         # Sections last: their rows may be covered by tables and passages.
         for kind, method in (("text", self.passage), ("table", self.whole_table), ("name", self.name),
                              ("columns", self.columns), ("heading", self.section)):
@@ -436,6 +438,7 @@ def main():
     parser.add_argument("--build", default="build/release", help="folder of apothem")
     parser.add_argument("--tests", default="build/release", help="folder of apothem_tests")
     parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
+    parser.add_argument("--jobs", type=int, default=1, help="how many commands of the quick subset run at a time")
     parser.add_argument("--texts", action="store_true", help="do passages and tests exist, and what follows from data alone")
     parser.add_argument("--write", action="store_true", help="replace stale numbers by fresh ones")
     parser.add_argument("--only", nargs="*", default=[], help="only these commands, scenes and test cases")

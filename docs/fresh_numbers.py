@@ -1,14 +1,17 @@
 """Fresh numbers: commands, each run once, and what expressions may ask of what they leave."""
+import atexit
 import csv as csv_module
 import json
 import math
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as Xml
+from concurrent.futures import ThreadPoolExecutor
 from xml.sax.saxutils import unescape
 
 from number_forms import Problem
@@ -52,6 +55,8 @@ class Fresh:
     def __init__(self, root, commands, slow, options):
         self.root, self.commands, self.slow, self.options = root, commands, slow, options
         self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
+        if not options.keep:
+            atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
         self.done, self.files, self.speed = {}, {}, None
         self.asked = set()  # commands that the expressions since the last `asked.clear()` have used
 
@@ -75,6 +80,17 @@ class Fresh:
         if isinstance(self.done[name], Exception):
             raise self.done[name]
         return self.done[name]
+
+    def run_together(self, jobs):
+        """Runs the commands of the quick subset, so many at a time."""
+        def attempt(name):
+            try:
+                self.run(name)
+            except (NotRun, Problem):
+                pass  # whoever asks for its numbers is told
+
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(attempt, [name for name, command in self.commands.items() if "quick" in command]))
 
     def forget(self, names):
         """Lets these commands run again when they are asked for, if nothing is kept."""

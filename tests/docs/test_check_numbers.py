@@ -1,12 +1,17 @@
 """The check of the documents' numbers, on a folder with a program, a document and a list of its own."""
+import contextlib
+import io
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "docs/check_numbers.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import check_numbers
 
 
 class Numbers(unittest.TestCase):
@@ -39,9 +44,12 @@ class Numbers(unittest.TestCase):
         self.write("docs/numbers.json", json.dumps({
             "commands": {"lever": command or {"run": "apothem lever", "named": "apothem lever", "quick": True}},
             "machine": machine, "entries": self.entries}))
-        result = subprocess.run([sys.executable, SCRIPT, "--root", self.root, "--build", "build", *options],
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-        return result.returncode, result.stdout
+        words = ["--root", str(self.root), "--build", "build", *options]
+        text = io.StringIO()
+        with (mock.patch.object(sys, "argv", [str(SCRIPT), *words]), contextlib.redirect_stdout(text),
+              contextlib.redirect_stderr(io.StringIO())):
+            code = check_numbers.main()
+        return code, text.getvalue()
 
     def replace(self, old, new, name="README.md"):
         self.write(name, (self.root / name).read_text().replace(old, new))
@@ -52,6 +60,14 @@ class Numbers(unittest.TestCase):
         self.assertIn("4 numbers ok, 0 stale", text)
         self.assertIn("asserted by the test 'a lever is in balance' (tests/test_a.cpp)", text)
         self.assertNotIn("no entry covers", text)
+
+    def test_the_script_and_commands_that_run_at_the_same_time_say_the_same(self):
+        self.replace("force 12.5 N", "force 12.7 N", "build/apothem")
+        said = self.check("--quick")
+        self.assertEqual(self.check("--quick", "--jobs", "2"), said)
+        done = subprocess.run([sys.executable, SCRIPT, "--root", self.root, "--build", "build", "--quick"],
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), said)
 
     def test_a_number_that_has_changed_is_stale_and_named_with_its_line(self):
         self.replace("force 12.5 N", "force 12.7 N", "build/apothem")

@@ -12,37 +12,40 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 
-# Runs in ParaView's Python: blocks, cells and arrays at every time, as JSON.
+# Runs in ParaView's Python, which takes long to start: of all files, blocks, cells and arrays at every time, as JSON.
 LOOK = """
 import json, sys
 from paraview import servermanager, simple
-answer = {}
-for reader in (simple.XDMFReader(FileNames=[sys.argv[1]]), simple.Xdmf3ReaderT(FileName=[sys.argv[1]])):
-    reader.UpdatePipelineInformation()
-    times = list(reader.TimestepValues)
-    frames = []
-    for time in times:
-        reader.UpdatePipeline(time)
-        data = servermanager.Fetch(reader)
-        parts = [data]
-        if data.IsA("vtkMultiBlockDataSet"):
-            parts = [data.GetBlock(i) for i in range(data.GetNumberOfBlocks())]
-        frame = []
-        while parts:
-            part = parts.pop(0)
-            if part.IsA("vtkMultiBlockDataSet"):
-                parts = [part.GetBlock(i) for i in range(part.GetNumberOfBlocks())] + parts
-                continue
-            arrays = {}
-            for of in (part.GetPointData(), part.GetCellData()):
-                for i in range(of.GetNumberOfArrays()):
-                    array = of.GetArray(i)
-                    arrays[array.GetName()] = [array.GetTuple(k)[0] for k in range(array.GetNumberOfTuples())]
-            frame.append({"points": part.GetNumberOfPoints(), "cells": part.GetNumberOfCells(), "arrays": arrays,
-                          "bounds": part.GetBounds()})
-        frames.append(frame)
-    answer[reader.GetXMLName()] = {"times": times, "frames": frames}
-print("ANSWER" + json.dumps(answer))
+answers = []
+for file in sys.argv[1:]:
+    answer = {}
+    for reader in (simple.XDMFReader(FileNames=[file]), simple.Xdmf3ReaderT(FileName=[file])):
+        reader.UpdatePipelineInformation()
+        times = list(reader.TimestepValues)
+        frames = []
+        for time in times:
+            reader.UpdatePipeline(time)
+            data = servermanager.Fetch(reader)
+            parts = [data]
+            if data.IsA("vtkMultiBlockDataSet"):
+                parts = [data.GetBlock(i) for i in range(data.GetNumberOfBlocks())]
+            frame = []
+            while parts:
+                part = parts.pop(0)
+                if part.IsA("vtkMultiBlockDataSet"):
+                    parts = [part.GetBlock(i) for i in range(part.GetNumberOfBlocks())] + parts
+                    continue
+                arrays = {}
+                for of in (part.GetPointData(), part.GetCellData()):
+                    for i in range(of.GetNumberOfArrays()):
+                        array = of.GetArray(i)
+                        arrays[array.GetName()] = [array.GetTuple(k)[0] for k in range(array.GetNumberOfTuples())]
+                frame.append({"points": part.GetNumberOfPoints(), "cells": part.GetNumberOfCells(), "arrays": arrays,
+                              "bounds": part.GetBounds()})
+            frames.append(frame)
+        answer[reader.GetXMLName()] = {"times": times, "frames": frames}
+    answers.append(answer)
+print("ANSWER" + json.dumps(answers))
 """
 
 
@@ -52,10 +55,10 @@ def run(program, scene, folder):
     subprocess.run([program, "run", scene_file, "-o", folder, "--quiet"], check=True)
 
 
-def paraview(folder, name):
+def paraview(folder, files):
     script = folder / "look.py"
     script.write_text(LOOK)
-    result = subprocess.run(["pvpython", script, folder / name], capture_output=True, text=True, check=False)
+    result = subprocess.run(["pvpython", script, *files], capture_output=True, text=True, check=False)
     found = re.search("ANSWER(.*)", result.stdout)
     if not found:
         raise SystemExit(f"pvpython has failed: {result.stdout}\n{result.stderr}")
@@ -79,11 +82,15 @@ def main():
         if not is_so:
             faults.append(what)
 
+    scenes = {"scene": meshio_reads.SCENE, "empty": meshio_reads.EMPTY}
     with tempfile.TemporaryDirectory() as name:
-        for scene_name, scene in (("scene", meshio_reads.SCENE), ("empty", meshio_reads.EMPTY)):
+        for scene_name, scene in scenes.items():
+            run(sys.argv[1], scene, pathlib.Path(name) / f"{scene_name}-files")
+            run(sys.argv[1], {**scene, "output": {**scene["output"], "format": "xdmf"}}, pathlib.Path(name) / scene_name)
+        seen = [pathlib.Path(name) / scene_name / file for scene_name in scenes for file in ("frames.xdmf", "contacts.xdmf")]
+        answers = dict(zip(seen, paraview(pathlib.Path(name), seen)))
+        for scene_name in scenes:
             files, whole = pathlib.Path(name) / f"{scene_name}-files", pathlib.Path(name) / scene_name
-            run(sys.argv[1], scene, files)
-            run(sys.argv[1], {**scene, "output": {**scene["output"], "format": "xdmf"}}, whole)
             singles = [meshio.read(file) for file in sorted((files / "frames").glob("bodies_*.vtu"))]
             times = [float(single.field_data["TimeValue"][0]) for single in singles]
             # HDF5 alone.
@@ -110,7 +117,7 @@ def main():
                     check(f"{scene_name}: cells in meshio", "body" in of_cells)
             # ParaView.
             for file in ("frames.xdmf", "contacts.xdmf"):
-                for reader, answer in paraview(whole, file).items():
+                for reader, answer in answers[whole / file].items():
                     check(f"{scene_name}: {answer['times']} in {reader}", answer["times"] == times)
                     for i, frame in enumerate(answer["frames"]):
                         single = singles[i]

@@ -408,26 +408,45 @@ def main():
         elif case.file.name not in message or "\n" in message or ".cpp" in message:
             faults.append(f"{case.name}: does not name the file in one line: {message}")
 
-    def judge_drawing(case, folder):
-        scene = {"materials": {"m": {"density": 1}, "marked": {"density": 1}},
-                 "contact": {"normal_stiffness": 1e6, "overlaps": "accept"}, "time": {"end": 1e-6},
-                 "import": [{"file": str(case.file), "material": "m", **case.keys}]}
+    def check_drawings(cases, folder):
+        """What `apothem check` says of a scene that imports the files of these cases, with materials and places of their own."""
+        scene = {"materials": {f"{kind} {i}": {"density": 1} for i in range(len(cases)) for kind in ("m", "marked")},
+                 "contact": {"normal_stiffness": 1e6, "overlaps": "accept"}, "time": {"end": 1e-6}, "import": []}
+        for i, case in enumerate(cases):
+            layers = {name: keys and {"material": f"marked {i}"} for name, keys in case.keys.get("layers", {}).items()}
+            scene["import"].append({"file": str(case.file), "material": f"m {i}", "offset": [100 * i, 0], **case.keys,
+                                    "layers": layers})
         path = folder / "scene.json"
         path.write_text(json.dumps(scene))
-        result = run("check", "--json", path)
-        if case.refusal:
-            return judge_refusal(case, result)
-        count["read"] += 1
+        return run("check", "--json", path)
+
+    def judge_drawings(cases, folder):
+        """Files that are read stand in one scene, as each start of the program loads GDAL, which takes longest. If one of them
+        is refused, each stands in a scene of its own."""
+        result = check_drawings(cases, folder)
+        if len(cases) == 1 and cases[0].refusal:
+            return judge_refusal(cases[0], result)
         if result.returncode != 0:
-            return faults.append(f"{case.name}: refused: {result.stderr.strip()}")
+            if len(cases) == 1:
+                count["read"] += 1
+                return faults.append(f"{cases[0].name}: refused: {result.stderr.strip()}")
+            before = len(faults)
+            for case in cases:
+                judge_drawings([case], folder)
+            if len(faults) == before:
+                faults.append(f"{cases[0].name} and {len(cases) - 1} more in one scene: refused: {result.stderr.strip()}")
+            return None
         bodies = json.loads(result.stdout)["bodies"]
-        found, expected = sorted(b["area"] for b in bodies), sorted(case.areas)
-        same = len(found) == len(expected) and all(math.isclose(a, b, rel_tol=case.tolerance) for a, b in zip(found, expected))
-        if not same:
-            faults.append(f"{case.name}: areas {found} instead of {expected}")
-        marked = any(keys for keys in case.keys.get("layers", {}).values())
-        if marked and any(b["material"] != "marked" for b in bodies):
-            faults.append(f"{case.name}: bodies are not on the layer {list(case.keys['layers'])}")
+        count["read"] += len(cases)
+        for i, case in enumerate(cases):
+            own = [b for b in bodies if b["material"] in (f"m {i}", f"marked {i}")]
+            found, expected = sorted(b["area"] for b in own), sorted(case.areas)
+            same = len(found) == len(expected) and all(math.isclose(a, b, rel_tol=case.tolerance) for a, b in zip(found, expected))
+            if not same:
+                faults.append(f"{case.name}: areas {found} instead of {expected}")
+            marked = any(keys for keys in case.keys.get("layers", {}).values())
+            if marked and any(b["material"] != f"marked {i}" for b in own):
+                faults.append(f"{case.name}: bodies are not on the layer {list(case.keys['layers'])}")
         return None
 
     def judge_mesh(case):
@@ -448,8 +467,11 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for cases in (drawings, refused_drawings, maps):
-            for case in cases(folder):
-                judge_drawing(case, folder)
+            every = list(cases(folder))
+            judge_drawings([case for case in every if not case.refusal], folder)
+            for case in every:
+                if case.refusal:
+                    judge_drawings([case], folder)
         for case in meshes(folder):
             judge_mesh(case)
     total = count["read"] + count["refused"]

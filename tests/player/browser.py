@@ -110,8 +110,9 @@ def at_two_times(check, page):
     # By speed: the L is the fastest, with 10 m/s, and the scale holds for all frames.
     browser.open(page + "#t=1&colour=speed")
     wait_for_run(browser)
-    check.colour(check.picture("desktop-speed"), 0.25, 4.5, FASTEST)
-    check.colour(check.picture("desktop-speed"), 7.2, 6.5, GREY)  # fixed bodies have no colour of a quantity
+    speed = check.picture("desktop-speed")
+    check.colour(speed, 0.25, 4.5, FASTEST)
+    check.colour(speed, 7.2, 6.5, GREY)  # fixed bodies have no colour of a quantity
     check.that(browser.evaluate("Math.abs(player.quantity.high - 10) < 0.02"), "the scale does not end at 10 m/s")
 
 

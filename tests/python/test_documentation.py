@@ -105,7 +105,7 @@ class Examples(FolderCase):
         self.assertGreater((self.folder / "stones.png").stat().st_size, 10000)
 
     def test_repose(self):
-        rows = self.run_example("repose.py", "90").replace("°", "").splitlines()[1:]
+        rows = self.run_example("repose.py", "60").replace("°", "").splitlines()[1:]
         slopes = [float(row.split()[2]) for row in rows]
         self.assertEqual(len(slopes), 3)
         self.assertGreater(slopes[0], 5)

@@ -20,8 +20,9 @@ cd "$folder"
 
 # Rigid bodies: quadrilaterals and crosses of a random fill fall onto each other, with friction and
 # dashpots, in a region with its columns and roses. They spin, and are few enough to be tracked all.
+# They begin close to the walls, as steps take long under QEMU.
 hopper=(--set fill.0.count=12 --set 'fill.0.shapes=[{"quadrilateral":{}},{"cross":{}}]' --set 'fill.0.velocity=[0,-4]'
-        --set 'fill.0.region=[[-0.7,0.82],[0.7,0.82],[0.7,1.8],[-0.7,1.8]]' --set fill.0.spin=3
+        --set 'fill.0.region=[[-0.15,0.25],[0.15,0.25],[0.55,0.7],[-0.55,0.7]]' --set fill.0.spin=3
         --set contact.normal_stiffness=1e8 --set 'regions={"bin":{"polygon":[[-0.8,0],[0.8,0],[0.8,2],[-0.8,2]]}}'
         --set output.history.interval=1e-4)
 # Meshes: the same as finite elements that stiffen as a logarithm.
@@ -34,7 +35,7 @@ elements=("${hopper[@]}" --set 'materials.rock={"density":2000,"young":1e8,"pois
 # each edge, dashpots along the normal, and damping of the whole motion.
 distance=("${hopper[@]}" --set contact.field=distance --set 'contact.friction={"coefficient":0.5,"law":"per_edge"}'
           --set 'contact.damping=[{"model":"normal_viscous","ratio":0.2},{"model":"mass","rate":1}]')
-declare -A until=([hopper]=0.2 [soft]=0.08 [elements]=0.08 [distance]=0.15)
+declare -A until=([hopper]=0.08 [soft]=0.02 [elements]=0.02 [distance]=0.06)
 
 results() { # PROGRAM FOLDER ARGUMENTS
   local on=$1 to=$2
@@ -47,7 +48,7 @@ for scene in hopper soft elements distance; do
   declare -n arguments=$scene
   arguments+=(--until "${until[$scene]}")
   expected=$(results here $scene "${arguments[@]}")
-  python3 -c 'import json, sys; assert json.load(open(sys.argv[1]))["pairs_per_step"]["touching"] > .1' $scene/run.json
+  python3 -c 'import json, sys; assert json.load(open(sys.argv[1]))["pairs_per_step"]["touching"] > .4' $scene/run.json
   for other in "${others[@]}"; do
     there=$(results $other $scene-$other "${arguments[@]}")
     echo "$scene, $other: $there"

@@ -85,7 +85,7 @@ TEST_CASE("a body that turns about a pivot takes it along into the next run",
     "bodies": [ { "name": "paddle", "material": "wood", "polygon": [[0, 0], [1, 0], [1, 0.1], [0, 0.1]],
                   "position": [4, 3], "angle": 0.2,
                   "motion": { "velocity": [[0, 2, -1]], "spin": [[0, 5]], "pivot": [4.5, 3] } } ],
-    "time": { "end": 0.5, "step": 1e-3 } })";
+    "time": { "end": 0.5, "step": 1e-3 }, "output": { "frames": 2 } })";
   Run first(scene_of(folder, paddle), {.folder = folder / "first"});
   REQUIRE(first.run(.3) == Run::Status::done);
   Run second(scene_with(folder, paddle, {"time.end=0.2"}),
@@ -215,7 +215,7 @@ TEST_CASE("bodies of another name or shape begin where their scene puts them", "
       { "name": "block", "material": "rock", "polygon": )") +
            shape +
            R"( }, { "name": "new", "material": "rock", "polygon": [[9, 9], [10, 9], [9, 10]] } ],
-      "time": { "end": 0.1 } })";
+      "time": { "end": 0.1 }, "output": { "frames": 2 } })";
   };
   Run same(scene_of(folder, bodies("[[0, 0], [1, 0], [1, 1], [0, 1]]")),
            {.folder = folder / "same", .from = folder / "first"});

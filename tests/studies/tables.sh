@@ -3,6 +3,9 @@
 set -euo pipefail
 command -v python3 >/dev/null || exit 77
 program=$(realpath "$1")
+# A python3 that chooses among versions takes longer for it than for most of what follows.
+python=$(python3 -c 'import sys; print(sys.executable)')
+python3() { "$python" "$@"; }
 studies=$(cd "$(dirname "$0")/../../data/studies" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -10,7 +13,7 @@ cd "$folder"
 fail() { echo "$1"; exit 1; }
 tables() { python3 "$studies/tables.py" "$@"; }
 
-small=(--set fill.0.count=80 --set contact.normal_stiffness=1e7 --quiet --jobs 2)
+small=(--set fill.0.count=80 --set contact.normal_stiffness=2e6 --quiet --jobs 2)
 "$program" sweep "$studies/hopper-fill.json" "${small[@]}" --vary fill.0.seed=1..4 -o fill
 grep -E '^(#|5,|9,|10,|11,)' "$studies/hopper-widths.csv" >widths.csv
 "$program" sweep "$studies/hopper-flow.json" "${small[@]}" --table widths.csv --vary fill.0.seed=1..4 --from fill -o flow
@@ -65,7 +68,7 @@ sed -i "s/$hash/fnv1a64:0/" here/results/few.csv
 tables hazard flow | tee hazard.txt
 jams=$(awk -F, 'NR > 1 { n += $6 } END { print n }' flow/summary.csv)
 found=$(grep -o '([0-9]*)' hazard.txt | tr -d '()' | awk '{ n += $1 } END { print n + 0 }')
-[ "$jams" = "$found" ] || fail "$jams jams, $found in the windows"
+[ "$jams" -gt 0 ] && [ "$jams" = "$found" ] || fail "$jams jams, $found in the windows"
 
 tables beverloo flow | tee beverloo.txt
 grep -q '^C = ' beverloo.txt || fail "no fit"
