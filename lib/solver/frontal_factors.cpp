@@ -28,6 +28,8 @@ constexpr int kPanel = 32;
 constexpr int kFew = 4, kSome = 16, kMany = 48;
 constexpr double kOfSome = .8, kOfMany = .1, kOfMore = .05;
 
+constexpr size_t nth(int i) { return static_cast<size_t>(i); }
+
 // c(i, j) -= SUM over k of a(i, k) b(j, k), for `packs` packs of rows and `wide` columns.
 template <int lanes, int packs, int wide>
 APOTHEM_INLINE void subtract_tile(const DenseColumns& c, const DenseColumns& a,
@@ -93,10 +95,10 @@ void sort_pairs(std::vector<std::pair<int, int>>& pairs, int size) {
   std::vector<std::pair<int, int>> sorted(pairs.size());
   for (int std::pair<int, int>::*const key :
        {&std::pair<int, int>::second, &std::pair<int, int>::first}) {
-    std::vector<size_t> end(static_cast<size_t>(size) + 1, 0);
-    for (const auto& pair : pairs) ++end[static_cast<size_t>(pair.*key) + 1];
-    for (size_t k = 0; k < static_cast<size_t>(size); ++k) end[k + 1] += end[k];
-    for (const auto& pair : pairs) sorted[end[static_cast<size_t>(pair.*key)]++] = pair;
+    std::vector<size_t> end(nth(size) + 1, 0);
+    for (const auto& pair : pairs) ++end[nth(pair.*key) + 1];
+    for (size_t k = 0; k < nth(size); ++k) end[k + 1] += end[k];
+    for (const auto& pair : pairs) sorted[end[nth(pair.*key)]++] = pair;
     std::swap(pairs, sorted);
   }
 }
@@ -107,19 +109,19 @@ std::vector<int> in_postorder(const std::vector<int>& parent) {
   std::vector<int> child(n, -1), next(n, -1), order, open;
   for (size_t i = n; i-- > 0;) {
     if (parent[i] < 0) continue;
-    next[i] = std::exchange(child[static_cast<size_t>(parent[i])], static_cast<int>(i));
+    next[i] = std::exchange(child[nth(parent[i])], static_cast<int>(i));
   }
   for (size_t root = 0; root < n; ++root) {
     if (parent[root] >= 0) continue;
     open.push_back(static_cast<int>(root));
     while (!open.empty()) {
-      const auto i = static_cast<size_t>(open.back());
+      const auto i = nth(open.back());
       const int below = std::exchange(child[i], -1);
       if (below < 0) {
         order.push_back(open.back());
         open.pop_back();
       } else {
-        child[i] = next[static_cast<size_t>(below)];
+        child[i] = next[nth(below)];
         open.push_back(below);
       }
     }
@@ -141,9 +143,8 @@ void FrontalFactors<B>::analyse(int size, std::vector<std::pair<int, int>> pairs
   place_blocks(pairs);
   const std::vector<int> sorted = in_postorder(find_parents());
   std::vector<int> later(sorted.size());
-  for (size_t k = 0; k < sorted.size(); ++k)
-    later[static_cast<size_t>(sorted[k])] = static_cast<int>(k);
-  for (int& place : place_) place = later[static_cast<size_t>(place)];
+  for (size_t k = 0; k < sorted.size(); ++k) later[nth(sorted[k])] = static_cast<int>(k);
+  for (int& place : place_) place = later[nth(place)];
   place_blocks(pairs);
   find_fronts();
   join_fronts();
@@ -153,7 +154,7 @@ void FrontalFactors<B>::analyse(int size, std::vector<std::pair<int, int>> pairs
 template <int B>
 void FrontalFactors<B>::order(const std::vector<std::pair<int, int>>& pairs) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(2 * pairs.size() + static_cast<size_t>(size_));
+  entries.reserve(2 * pairs.size() + nth(size_));
   for (const auto& [row, column] : pairs) {
     entries.emplace_back(row, column, 1.);
     entries.emplace_back(column, row, 1.);
@@ -163,8 +164,8 @@ void FrontalFactors<B>::order(const std::vector<std::pair<int, int>>& pairs) {
   pattern.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> eliminated;
   Eigen::AMDOrdering<int>()(pattern, eliminated);
-  place_.resize(static_cast<size_t>(size_));
-  for (int k = 0; k < size_; ++k) place_[static_cast<size_t>(eliminated.indices()[k])] = k;
+  place_.resize(nth(size_));
+  for (int k = 0; k < size_; ++k) place_[nth(eliminated.indices()[k])] = k;
 }
 
 // Sorts the blocks below the diagonal by columns, in the order of elimination.
@@ -173,15 +174,15 @@ void FrontalFactors<B>::place_blocks(std::vector<std::pair<int, int>>& pairs) {
   std::vector<std::pair<int, int>> placed;  // column, row
   placed.reserve(pairs.size());
   for (const auto& [row, column] : pairs) {
-    const int r = place_[static_cast<size_t>(row)], c = place_[static_cast<size_t>(column)];
+    const int r = place_[nth(row)], c = place_[nth(column)];
     placed.emplace_back(std::min(r, c), std::max(r, c));
   }
   sort_pairs(placed, size_);
-  const auto n = static_cast<size_t>(size_);
+  const auto n = nth(size_);
   first_.assign(n + 1, 0);
   row_.clear();
   for (const auto& [column, row] : placed) {
-    ++first_[static_cast<size_t>(column) + 1];
+    ++first_[nth(column) + 1];
     row_.push_back(row);
   }
   for (size_t k = 0; k < n; ++k) first_[k + 1] += first_[k];
@@ -191,19 +192,19 @@ void FrontalFactors<B>::place_blocks(std::vector<std::pair<int, int>>& pairs) {
 // (1990) 134).
 template <int B>
 std::vector<int> FrontalFactors<B>::find_parents() const {
-  const auto n = static_cast<size_t>(size_);
+  const auto n = nth(size_);
   std::vector<int> parent(n, -1), ancestor(n, -1);
   std::vector<std::vector<int>> columns(n);  // of the entries of each row
   for (size_t k = 0; k < n; ++k) {
     for (int p = first_[k]; p < first_[k + 1]; ++p) {
-      columns[static_cast<size_t>(row_[static_cast<size_t>(p)])].push_back(static_cast<int>(k));
+      columns[nth(row_[nth(p)])].push_back(static_cast<int>(k));
     }
   }
   for (size_t row = 0; row < n; ++row) {
     for (int i : columns[row]) {
       while (i >= 0 && i < static_cast<int>(row)) {
-        const int next = std::exchange(ancestor[static_cast<size_t>(i)], static_cast<int>(row));
-        if (next < 0) parent[static_cast<size_t>(i)] = static_cast<int>(row);
+        const int next = std::exchange(ancestor[nth(i)], static_cast<int>(row));
+        if (next < 0) parent[nth(i)] = static_cast<int>(row);
         i = next;
       }
     }
@@ -214,7 +215,7 @@ std::vector<int> FrontalFactors<B>::find_parents() const {
 // One front for each run of columns of which each has the rows of the next one, and that.
 template <int B>
 void FrontalFactors<B>::find_fronts() {
-  const auto n = static_cast<size_t>(size_);
+  const auto n = nth(size_);
   std::vector<std::vector<int>> rows(n), children(n);  // of each column
   std::vector<int> seen(n, -1);
   fronts_.clear();
@@ -224,21 +225,21 @@ void FrontalFactors<B>::find_fronts() {
     std::vector<int>& here = rows[k];
     seen[k] = column;
     const auto add = [&](int row) {
-      if (std::exchange(seen[static_cast<size_t>(row)], column) != column) here.push_back(row);
+      if (std::exchange(seen[nth(row)], column) != column) here.push_back(row);
     };
     for (const int child : children[k]) {
-      for (const int row : rows[static_cast<size_t>(child)]) add(row);
+      for (const int row : rows[nth(child)]) add(row);
     }
-    for (int p = first_[k]; p < first_[k + 1]; ++p) add(row_[static_cast<size_t>(p)]);
+    for (int p = first_[k]; p < first_[k + 1]; ++p) add(row_[nth(p)]);
     if (!std::ranges::is_sorted(here)) std::ranges::sort(here);
-    if (!here.empty()) children[static_cast<size_t>(here[0])].push_back(column);
+    if (!here.empty()) children[nth(here[0])].push_back(column);
     const bool joins = children[k].size() == 1 && children[k][0] == column - 1 &&
                        rows[k - 1].size() == here.size() + 1;
     if (!joins) fronts_.push_back({.first = column});
     ++fronts_.back().count;
   }
   for (Front& front : fronts_) {
-    const std::vector<int>& last = rows[static_cast<size_t>(front.first + front.count - 1)];
+    const std::vector<int>& last = rows[nth(front.first + front.count - 1)];
     front.rows = rows_.size();
     front.below = static_cast<int>(last.size());
     rows_.insert(rows_.end(), last.begin(), last.end());
@@ -278,14 +279,14 @@ void FrontalFactors<B>::join_fronts() {
     zeros.push_back(added);
   }
   fronts_ = std::move(joined);
-  std::vector<int> of_column(static_cast<size_t>(size_));
+  std::vector<int> of_column(nth(size_));
   for (size_t f = 0; f < fronts_.size(); ++f) {
     for (int c = 0; c < fronts_[f].count; ++c)
-      of_column[static_cast<size_t>(fronts_[f].first + c)] = static_cast<int>(f);
+      of_column[nth(fronts_[f].first + c)] = static_cast<int>(f);
   }
   for (size_t f = 0; f < fronts_.size(); ++f) {
     if (fronts_[f].below == 0) continue;
-    const auto parent = static_cast<size_t>(of_column[static_cast<size_t>(rows_[fronts_[f].rows])]);
+    const auto parent = nth(of_column[nth(rows_[fronts_[f].rows])]);
     fronts_[f].parent = static_cast<int>(parent);
     fronts_[f].sibling = std::exchange(fronts_[parent].child, static_cast<int>(f));
   }
@@ -298,16 +299,16 @@ void FrontalFactors<B>::measure_fronts() {
   std::vector<size_t> of_children(fronts_.size(), 0);  // what they leave
   for (size_t f = 0; f < fronts_.size(); ++f) {
     Front& front = fronts_[f];
-    const size_t height = static_cast<size_t>(B * front.size());
-    const size_t below = static_cast<size_t>(B * front.below);
+    const size_t height = nth(B * front.size());
+    const size_t below = nth(B * front.below);
     tallest = std::max(tallest, height);
     front.factor = factors;
-    factors += height * static_cast<size_t>(B * front.count);
-    panel = std::max(panel, height * static_cast<size_t>(B * front.count));
+    factors += height * nth(B * front.count);
+    panel = std::max(panel, height * nth(B * front.count));
     left -= of_children[f];
     left += below * below;
     most = std::max(most, left);
-    if (front.parent >= 0) of_children[static_cast<size_t>(front.parent)] += below * below;
+    if (front.parent >= 0) of_children[nth(front.parent)] += below * below;
   }
   lower_.resize(factors);
   upper_.clear();
@@ -315,19 +316,19 @@ void FrontalFactors<B>::measure_fronts() {
   front_.resize(tallest * tallest);
   across_.resize(panel);
   left_.resize(most);
-  local_.assign(static_cast<size_t>(size_), 0);
-  pivot_.resize(static_cast<size_t>(size_));
-  inverse_.resize(static_cast<size_t>(size_));
+  local_.assign(nth(size_), 0);
+  pivot_.resize(nth(size_));
+  inverse_.resize(nth(size_));
   below_.resize(row_.size());
   above_.resize(row_.size());
-  diagonal_.resize(static_cast<size_t>(size_));
+  diagonal_.resize(nth(size_));
 }
 
 template <int B>
 typename FrontalFactors<B>::Block& FrontalFactors<B>::at(int row, int column) {
-  const int r = place_[static_cast<size_t>(row)], c = place_[static_cast<size_t>(column)];
-  if (r == c) return diagonal_[static_cast<size_t>(r)];
-  const auto k = static_cast<size_t>(std::min(r, c));
+  const int r = place_[nth(row)], c = place_[nth(column)];
+  if (r == c) return diagonal_[nth(r)];
+  const auto k = nth(std::min(r, c));
   const auto found =
       std::lower_bound(row_.begin() + first_[k], row_.begin() + first_[k + 1], std::max(r, c));
   const auto i = static_cast<size_t>(found - row_.begin());
@@ -378,11 +379,11 @@ template <int B>
 void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
   const int height = B * front.size();
   const DenseColumns to{front_.data(), height};
-  std::fill_n(front_.begin(), static_cast<size_t>(height) * static_cast<size_t>(height), 0.);
-  for (int c = 0; c < front.count; ++c) local_[static_cast<size_t>(front.first + c)] = B * c;
+  std::fill_n(front_.begin(), nth(height) * nth(height), 0.);
+  for (int c = 0; c < front.count; ++c) local_[nth(front.first + c)] = B * c;
   const std::span<const int> rows = rows_of(front);
   for (int r = 0; r < front.below; ++r) {
-    local_[static_cast<size_t>(rows[static_cast<size_t>(r)])] = B * (front.count + r);
+    local_[nth(rows[nth(r)])] = B * (front.count + r);
   }
   const auto put = [&](const Block& block, int row, int column) {
     for (int j = 0; j < B; ++j) {
@@ -390,11 +391,11 @@ void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
     }
   };
   for (int c = 0; c < front.count; ++c) {
-    const auto k = static_cast<size_t>(front.first + c);
+    const auto k = nth(front.first + c);
     put(diagonal_[k], B * c, B * c);
     for (int p = first_[k]; p < first_[k + 1]; ++p) {
-      const auto entry = static_cast<size_t>(p);
-      const int row = local_[static_cast<size_t>(row_[entry])];
+      const auto entry = nth(p);
+      const int row = local_[nth(row_[entry])];
       put(below_[entry], row, B * c);
       if (!symmetric) put(above_[entry], B * c, row);
     }
@@ -406,16 +407,16 @@ void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
 template <int B>
 void FrontalFactors<B>::take_left(const Front& front, bool symmetric) {
   const DenseColumns to{front_.data(), B * front.size()};
-  for (int f = front.child; f >= 0; f = fronts_[static_cast<size_t>(f)].sibling) {
-    const Front& child = fronts_[static_cast<size_t>(f)];
+  for (int f = front.child; f >= 0; f = fronts_[nth(f)].sibling) {
+    const Front& child = fronts_[nth(f)];
     const int height = B * child.below;
-    top_ -= static_cast<size_t>(height) * static_cast<size_t>(height);
+    top_ -= nth(height) * nth(height);
     const DenseColumns from{&left_[top_], height};
     const std::span<const int> rows = rows_of(child);
     for (int c = 0; c < child.below; ++c) {
-      const int column = local_[static_cast<size_t>(rows[static_cast<size_t>(c)])];
+      const int column = local_[nth(rows[nth(c)])];
       for (int r = symmetric ? c : 0; r < child.below; ++r) {
-        const int row = local_[static_cast<size_t>(rows[static_cast<size_t>(r)])];
+        const int row = local_[nth(rows[nth(r)])];
         for (int j = 0; j < B; ++j) {
           for (int i = 0; i < B; ++i) {
             *to.at(row + i, column + j) += *from.at(B * r + i, B * c + j);
@@ -450,7 +451,7 @@ template <int B>
 bool FrontalFactors<B>::eliminate_block(const Front& front, int k, int end, bool symmetric) {
   const int height = B * front.size();
   const DenseColumns f{front_.data(), height}, across{across_.data(), height};
-  const auto number = static_cast<size_t>(front.first + k / B);
+  const auto number = nth(front.first + k / B);
   Block& pivot = pivot_[number];
   for (int j = 0; j < B; ++j) {
     for (int i = 0; i < B; ++i) {
@@ -464,12 +465,12 @@ bool FrontalFactors<B>::eliminate_block(const Front& front, int k, int end, bool
   for (int row = k + B; row < height; ++row) {
     std::array<double, B> below;
     for (int j = 0; j < B; ++j) {
-      below[static_cast<size_t>(j)] = *f.at(row, k + j);
-      *across.at(row, k + j) = symmetric ? below[static_cast<size_t>(j)] : *f.at(k + j, row);
+      below[nth(j)] = *f.at(row, k + j);
+      *across.at(row, k + j) = symmetric ? below[nth(j)] : *f.at(k + j, row);
     }
     for (int j = 0; j < B; ++j) {
       double sum = 0;
-      for (int i = 0; i < B; ++i) sum += below[static_cast<size_t>(i)] * inverse(i, j);
+      for (int i = 0; i < B; ++i) sum += below[nth(i)] * inverse(i, j);
       *f.at(row, k + j) = sum;
     }
   }
@@ -482,8 +483,8 @@ bool FrontalFactors<B>::eliminate_block(const Front& front, int k, int end, bool
 // Puts the columns of L and the rows of U away, and what is left for the front above.
 template <int B>
 void FrontalFactors<B>::keep_factors(const Front& front, bool symmetric) {
-  const auto height = static_cast<size_t>(B * front.size());
-  const auto columns = static_cast<size_t>(B * front.count), below = height - columns;
+  const auto height = nth(B * front.size());
+  const auto columns = nth(B * front.count), below = height - columns;
   const size_t count = height * columns;
   std::copy_n(front_.data(), count, &lower_[front.factor]);
   if (!symmetric) std::copy_n(across_.data(), count, &upper_[front.factor]);
@@ -495,15 +496,15 @@ void FrontalFactors<B>::keep_factors(const Front& front, bool symmetric) {
 
 template <int B>
 void FrontalFactors<B>::solve(std::span<double> x) const {
-  const auto n = static_cast<size_t>(size_);
+  const auto n = nth(size_);
   std::vector<double> y(B * n), here(tallest_);
   for (size_t i = 0; i < n; ++i) {
-    std::copy_n(&x[B * i], B, &y[B * static_cast<size_t>(place_[i])]);
+    std::copy_n(&x[B * i], B, &y[B * nth(place_[i])]);
   }
   for (const Front& front : fronts_) solve_down(front, y, here);
   for (size_t f = fronts_.size(); f-- > 0;) solve_up(fronts_[f], y, here);
   for (size_t i = 0; i < n; ++i) {
-    std::copy_n(&y[B * static_cast<size_t>(place_[i])], B, &x[B * i]);
+    std::copy_n(&y[B * nth(place_[i])], B, &x[B * i]);
   }
 }
 
@@ -511,9 +512,9 @@ void FrontalFactors<B>::solve(std::span<double> x) const {
 template <int B>
 void FrontalFactors<B>::gather(const Front& front, std::span<const double> y,
                                std::span<double> here) const {
-  std::copy_n(&y[static_cast<size_t>(B * front.first)], B * front.count, here.begin());
+  std::copy_n(&y[nth(B * front.first)], B * front.count, here.begin());
   auto to = here.begin() + B * front.count;
-  for (const int row : rows_of(front)) to = std::copy_n(&y[static_cast<size_t>(B * row)], B, to);
+  for (const int row : rows_of(front)) to = std::copy_n(&y[nth(B * row)], B, to);
 }
 
 // y := L^-1 y, for the columns of a front.
@@ -524,15 +525,15 @@ void FrontalFactors<B>::solve_down(const Front& front, std::span<double> y,
   const int columns = B * front.count, height = B * front.size();
   const double* column = &lower_[front.factor];
   for (int k = 0; k < columns; ++k, column += height) {
-    const double value = here[static_cast<size_t>(k)];
+    const double value = here[nth(k)];
     for (int row = (k / B + 1) * B; row < height; ++row) {
-      here[static_cast<size_t>(row)] -= column[row] * value;
+      here[nth(row)] -= column[row] * value;
     }
   }
-  std::copy_n(here.begin(), columns, &y[static_cast<size_t>(B * front.first)]);
+  std::copy_n(here.begin(), columns, &y[nth(B * front.first)]);
   auto from = here.begin() + columns;
   for (const int row : rows_of(front)) {
-    std::copy_n(from, B, &y[static_cast<size_t>(B * row)]);
+    std::copy_n(from, B, &y[nth(B * row)]);
     from += B;
   }
 }
@@ -545,20 +546,20 @@ void FrontalFactors<B>::solve_up(const Front& front, std::span<double> y,
   const int height = B * front.size();
   const std::vector<double>& across = symmetric_ ? lower_ : upper_;
   for (int k = front.count - 1; k >= 0; --k) {
-    Eigen::Map<Part> part(&here[static_cast<size_t>(B * k)]);
+    Eigen::Map<Part> part(&here[nth(B * k)]);
     Part sum;
     for (int j = 0; j < B; ++j) {
-      const double* column = &across[front.factor + static_cast<size_t>((B * k + j) * height)];
+      const double* column = &across[front.factor + nth(B * k + j) * nth(height)];
       double product = 0;
       for (int row = B * (k + 1); row < height; ++row) {
-        product += column[row] * here[static_cast<size_t>(row)];
+        product += column[row] * here[nth(row)];
       }
       sum[j] = product;
     }
-    const Block& inverse = inverse_[static_cast<size_t>(front.first + k)];
+    const Block& inverse = inverse_[nth(front.first + k)];
     part = symmetric_ ? Part(inverse * part - sum) : Part(inverse * (part - sum));
   }
-  std::copy_n(here.begin(), B * front.count, &y[static_cast<size_t>(B * front.first)]);
+  std::copy_n(here.begin(), B * front.count, &y[nth(B * front.first)]);
 }
 
 template class FrontalFactors<2>;
