@@ -65,15 +65,16 @@ FigureRuns::FigureRuns(std::string data, std::string folder, std::string studies
     : data_(std::move(data)),
       folder_(std::move(folder)),
       studies_(std::move(studies)),
-      program_(text_hash(read_text("/proc/self/exe"))),
       threads_(threads),
       usual_(usual_seconds(data_)) {}
 
 FigureRuns::Planned FigureRuns::look(const std::string& name, const std::string& folder,
                                      const std::string& key) const {
+  // Read when it is asked for, which is not where a figure is refused.
+  static const std::string program = text_hash(read_text("/proc/self/exe"));
   Planned planned;
   planned.folder = folder;
-  planned.key = text_hash(key + program_);
+  planned.key = text_hash(key + program);
   const auto usual = usual_.find(name);
   planned.seconds = usual == usual_.end() ? kUsualSeconds : usual->second;
   const auto record = nlohmann::json::parse(find_text(record_in(folder)), nullptr, false);

@@ -51,7 +51,7 @@ class FigureRuns {
   void keep(const std::string& figure, const std::string& name, const std::string& status);
   [[nodiscard]] std::string time_left() const;
 
-  std::string data_, folder_, studies_, program_;
+  std::string data_, folder_, studies_;
   int threads_;
   std::map<std::string, double> usual_;  // seconds of scenes, from data/figures/seconds.csv
   std::map<std::string, Planned> planned_;
