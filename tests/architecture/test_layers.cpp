@@ -40,7 +40,7 @@ std::vector<Include> includes(const std::string& folder) {
 const std::map<std::string, std::set<std::string>> kMayInclude{
     {"system", {}},
     {"execution", {}},
-    {"solver", {}},
+    {"solver", {"execution"}},
     {"text", {"system"}},
     {"geometry", {"system", "execution"}},
     {"archive", {"geometry"}},
