@@ -284,6 +284,38 @@ TEST_CASE("a settled start may begin with another run", "[from]") {
   }
 }
 
+TEST_CASE("a packing comes to rest with contacts a hundred times stiffer", "[from]") {
+  const Folder folder;
+  const auto text = [](const char* stiffness, const char* time) {
+    return fmt::format(
+        R"({{ "gravity": [0, -9.81], "materials": {{ "rock": {{ "density": 2000 }} }},
+    "contact": {{ "normal_stiffness": {}, "friction": {{ "coefficient": 0.4 }},
+                  "damping": {{ "model": "viscous", "ratio": 0.5 }} }},
+    "bodies": [ {{ "name": "bin", "material": "rock", "motion": "fixed",
+        "polygon": [[-1, 2], [-1, -0.2], [1, -0.2], [1, 2], [0.6, 2], [0.6, 0], [-0.6, 0.1], [-0.6, 2]] }} ],
+    "fill": [ {{ "name": "block", "material": "rock", "region": [[-0.6, 0.1], [0.6, 0.1], [0.6, 1.5], [-0.6, 1.5]],
+        "shapes": [{{ "quadrilateral": {{}} }}], "count": {}, "seed": 3, "arrangement": "dense", "diameter": 0.2 }} ],
+    "time": {} }})",
+        stiffness, kSanitized ? 8 : 30, time);
+  };
+  const Scene first = scene_of(folder, text("1e6", R"({ "end": 1.5, "scheme": "auto" })"));
+  Run fall(first, RunSettings{.folder = folder / "first"});
+  fall.run();
+  const Scene scene = scene_of(folder, text("1e8", R"({ "end": 1e-4, "start": "settled" })"));
+  const Run run(scene, RunSettings{.folder = "", .from = folder / "first"});
+  double moved = 0;
+  for (RigidIndex i = 1; i < run.state().layout.rigid_bodies; ++i) {
+    const double mass = scene.model.bodies[i].mass, weight = 9.81 * mass;
+    const Eigen::Vector3d force = run.state().force(i);
+    CHECK(std::abs(force[0]) < 1e-6 * weight);
+    CHECK(force[1] == Approx(weight).epsilon(1e-6));
+    CHECK(std::abs(force[2]) < 1e-6 * weight * scene.model.bodies[i].inradius);
+    moved = std::max(moved, (run.state().pose(i) - fall.state().pose(i)).norm());
+  }
+  CHECK(moved > 1e-4);  // pressed a hundred times less deep
+  CHECK(moved < .1);
+}
+
 namespace {
 
 const char* const kPull = R"(, "velocity": [[0, 0, 0], [1, 0, 0], [1.000001, 4e-4, 0]])";

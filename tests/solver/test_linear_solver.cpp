@@ -51,6 +51,31 @@ System random_system(SeededRandom& random, int bodies, int nodes, bool symmetric
   return s;
 }
 
+// Nodes in a square, each coupled with those next to it, and a body that touches one side.
+System grid_system(SeededRandom& random, int side, bool symmetric) {
+  System s;
+  s.rigid = 3;
+  const int size = 3 + 2 * side * side;
+  s.dense = Eigen::MatrixXd::Zero(size, size);
+  s.moves.assign(static_cast<size_t>(size), 1);
+  s.diagonal.assign(static_cast<size_t>(size), 12);
+  const auto add = [&](int i, int j) {
+    const double value = random.uniform(-1, 1), across = symmetric ? value : random.uniform(-1, 1);
+    s.tangent.add(static_cast<size_t>(i), static_cast<size_t>(j), value);
+    s.tangent.add(static_cast<size_t>(j), static_cast<size_t>(i), across);
+    s.dense(i, j) += value;
+    s.dense(j, i) += across;
+  };
+  for (int n = 0; n < side * side; ++n) {
+    for (const int to :
+         {n, n % side + 1 < side ? n + 1 : n, n + side < side * side ? n + side : n}) {
+      for (int k = 0; k < 4; ++k) add(3 + 2 * n + k / 2, 3 + 2 * to + k % 2);
+    }
+    for (int k = 0; n < side && k < 6; ++k) add(k / 2, 3 + 2 * n + k % 2);
+  }
+  return s;
+}
+
 // The part of the matrix that belongs to the system.
 Eigen::MatrixXd moving(const System& s, std::vector<int>& which) {
   for (size_t c = 0; c < s.moves.size(); ++c) {
@@ -99,6 +124,23 @@ TEST_CASE("sparse systems of bodies and nodes are solved as dense ones", "[solve
     }
     const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues();
     CHECK(solver.negative_pivots(1e-12) == (values.array() < 0).count());
+  }
+}
+
+TEST_CASE("systems of meshes, whose fronts are large, are solved as dense ones", "[solver]") {
+  SeededRandom random(52);
+  for (int n = 0; n < scaled(24); ++n) {
+    const bool symmetric = n % 2 == 0;
+    const linear::System s =
+        linear::grid_system(random, random.integer(2, kSanitized ? 8 : 24), symmetric);
+    std::vector<int> which;
+    const Eigen::MatrixXd a = linear::moving(s, which);
+    Eigen::VectorXd b(s.moves.size()), x(s.moves.size());
+    for (double& entry : b) entry = random.uniform(-1, 1);
+    LinearSolver solver;
+    REQUIRE(solver.factorise(s.tangent, s.rigid, s.moves, s.diagonal));
+    solver.solve({b.data(), s.moves.size()}, {x.data(), s.moves.size()});
+    CHECK((a * x - b).norm() < 1e-12 * b.norm());
   }
 }
 
