@@ -348,7 +348,9 @@ ContactNumbers Contacts::numbers() const {
 }
 
 void Contacts::set_memory(const FrictionMemory& memory) {
-  if (tangential_) memory_ = memory;
+  if (!tangential_) return;
+  memory_ = memory;
+  if (!table_.damped()) memory_.forget_pushes();
 }
 
 void Contacts::fields(Archive& archive) {

@@ -18,9 +18,10 @@ namespace apothem {
 class ContactTerm;
 class FrictionMemory;
 
-/// Newton's method, and dynamic relaxation where that cannot be used or fails. Friction is
+/// Newton's method, and dynamic relaxation where a term does not know its tangent. Friction is
 /// followed from load step to load step: within one, it is a function of the displacements since
-/// its start, so that the path of the relaxation leaves no trace.
+/// its start, so that the way to the equilibrium leaves no trace. Where bodies settle it follows
+/// their way.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;

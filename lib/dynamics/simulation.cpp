@@ -346,6 +346,8 @@ void Simulation::settle(const std::function<bool()>& stop) {
     throw Unrunnable("nothing can touch anything: no body comes to rest; leave out time.start",
                      "time/start", -1);
   }
+  // Friction at its limit must not follow the dashpots of a motion that is over.
+  if (contact_) contact_->silence_dashpots(state_);
   Equilibrium equilibrium(model_, dofs_, terms_, contact_, kSettled);
   try {
     equilibrium.settle(state_, stop);

@@ -1,7 +1,5 @@
 #include "lib/solver/frontal_factors.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,13 +21,6 @@ namespace {
 
 // Columns of a front that are eliminated before the others follow.
 constexpr int kPanel = 32;
-// Fronts are joined where that adds no more than these parts of zeros, by the number of columns (Y.
-// Chen et al., ACM Trans. Math. Softw. 35 (2008) 22).
-constexpr int kFew = 4, kSome = 16, kMany = 48;
-constexpr double kOfSome = .8, kOfMany = .1, kOfMore = .05;
-
-constexpr size_t nth(int i) { return static_cast<size_t>(i); }
-
 // c(i, j) -= SUM over k of a(i, k) b(j, k), for `packs` packs of rows and `wide` columns.
 template <int lanes, int packs, int wide>
 APOTHEM_INLINE void subtract_tile(const DenseColumns& c, const DenseColumns& a,
@@ -90,248 +81,30 @@ void subtract_product(const DenseColumns& c, const DenseColumns& a, const DenseC
   });
 }
 
-// Sorts pairs of numbers below `size`, which takes no longer than to read them a few times.
-void sort_pairs(std::vector<std::pair<int, int>>& pairs, int size) {
-  std::vector<std::pair<int, int>> sorted(pairs.size());
-  for (int std::pair<int, int>::*const key :
-       {&std::pair<int, int>::second, &std::pair<int, int>::first}) {
-    std::vector<size_t> end(nth(size) + 1, 0);
-    for (const auto& pair : pairs) ++end[nth(pair.*key) + 1];
-    for (size_t k = 0; k < nth(size); ++k) end[k + 1] += end[k];
-    for (const auto& pair : pairs) sorted[end[nth(pair.*key)]++] = pair;
-    std::swap(pairs, sorted);
-  }
-}
-
-// The nodes of a forest so that each comes after those below it.
-std::vector<int> in_postorder(const std::vector<int>& parent) {
-  const auto n = parent.size();
-  std::vector<int> child(n, -1), next(n, -1), order, open;
-  for (size_t i = n; i-- > 0;) {
-    if (parent[i] < 0) continue;
-    next[i] = std::exchange(child[nth(parent[i])], static_cast<int>(i));
-  }
-  for (size_t root = 0; root < n; ++root) {
-    if (parent[root] >= 0) continue;
-    open.push_back(static_cast<int>(root));
-    while (!open.empty()) {
-      const auto i = nth(open.back());
-      const int below = std::exchange(child[i], -1);
-      if (below < 0) {
-        order.push_back(open.back());
-        open.pop_back();
-      } else {
-        child[i] = next[nth(below)];
-        open.push_back(below);
-      }
-    }
-  }
-  return order;
-}
-
 }  // namespace
 
 template <int B>
 void FrontalFactors<B>::analyse(int size, std::vector<std::pair<int, int>> pairs) {
-  size_ = size;
-  for (auto& [row, column] : pairs) {
-    if (row < column) std::swap(row, column);
-  }
-  sort_pairs(pairs, size);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  order(pairs);
-  place_blocks(pairs);
-  const std::vector<int> sorted = in_postorder(find_parents());
-  std::vector<int> later(sorted.size());
-  for (size_t k = 0; k < sorted.size(); ++k) later[nth(sorted[k])] = static_cast<int>(k);
-  for (int& place : place_) place = later[nth(place)];
-  place_blocks(pairs);
-  find_fronts();
-  join_fronts();
-  measure_fronts();
-}
-
-template <int B>
-void FrontalFactors<B>::order(const std::vector<std::pair<int, int>>& pairs) {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(2 * pairs.size() + nth(size_));
-  for (const auto& [row, column] : pairs) {
-    entries.emplace_back(row, column, 1.);
-    entries.emplace_back(column, row, 1.);
-  }
-  for (int i = 0; i < size_; ++i) entries.emplace_back(i, i, 1.);
-  Eigen::SparseMatrix<double> pattern(size_, size_);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> eliminated;
-  Eigen::AMDOrdering<int>()(pattern, eliminated);
-  place_.resize(nth(size_));
-  for (int k = 0; k < size_; ++k) place_[nth(eliminated.indices()[k])] = k;
-}
-
-// Sorts the blocks below the diagonal by columns, in the order of elimination.
-template <int B>
-void FrontalFactors<B>::place_blocks(std::vector<std::pair<int, int>>& pairs) {
-  std::vector<std::pair<int, int>> placed;  // column, row
-  placed.reserve(pairs.size());
-  for (const auto& [row, column] : pairs) {
-    const int r = place_[nth(row)], c = place_[nth(column)];
-    placed.emplace_back(std::min(r, c), std::max(r, c));
-  }
-  sort_pairs(placed, size_);
-  const auto n = nth(size_);
-  first_.assign(n + 1, 0);
-  row_.clear();
-  for (const auto& [column, row] : placed) {
-    ++first_[nth(column) + 1];
-    row_.push_back(row);
-  }
-  for (size_t k = 0; k < n; ++k) first_[k + 1] += first_[k];
-}
-
-// The tree of elimination: the first row of each column of L (J. Liu, SIAM J. Matrix Anal. Appl. 11
-// (1990) 134).
-template <int B>
-std::vector<int> FrontalFactors<B>::find_parents() const {
-  const auto n = nth(size_);
-  std::vector<int> parent(n, -1), ancestor(n, -1);
-  std::vector<std::vector<int>> columns(n);  // of the entries of each row
-  for (size_t k = 0; k < n; ++k) {
-    for (int p = first_[k]; p < first_[k + 1]; ++p) {
-      columns[nth(row_[nth(p)])].push_back(static_cast<int>(k));
-    }
-  }
-  for (size_t row = 0; row < n; ++row) {
-    for (int i : columns[row]) {
-      while (i >= 0 && i < static_cast<int>(row)) {
-        const int next = std::exchange(ancestor[nth(i)], static_cast<int>(row));
-        if (next < 0) parent[nth(i)] = static_cast<int>(row);
-        i = next;
-      }
-    }
-  }
-  return parent;
-}
-
-// One front for each run of columns of which each has the rows of the next one, and that.
-template <int B>
-void FrontalFactors<B>::find_fronts() {
-  const auto n = nth(size_);
-  std::vector<std::vector<int>> rows(n), children(n);  // of each column
-  std::vector<int> seen(n, -1);
-  fronts_.clear();
-  rows_.clear();
-  for (size_t k = 0; k < n; ++k) {
-    const int column = static_cast<int>(k);
-    std::vector<int>& here = rows[k];
-    seen[k] = column;
-    const auto add = [&](int row) {
-      if (std::exchange(seen[nth(row)], column) != column) here.push_back(row);
-    };
-    for (const int child : children[k]) {
-      for (const int row : rows[nth(child)]) add(row);
-    }
-    for (int p = first_[k]; p < first_[k + 1]; ++p) add(row_[nth(p)]);
-    if (!std::ranges::is_sorted(here)) std::ranges::sort(here);
-    if (!here.empty()) children[nth(here[0])].push_back(column);
-    const bool joins = children[k].size() == 1 && children[k][0] == column - 1 &&
-                       rows[k - 1].size() == here.size() + 1;
-    if (!joins) fronts_.push_back({.first = column});
-    ++fronts_.back().count;
-  }
-  for (Front& front : fronts_) {
-    const std::vector<int>& last = rows[nth(front.first + front.count - 1)];
-    front.rows = rows_.size();
-    front.below = static_cast<int>(last.size());
-    rows_.insert(rows_.end(), last.begin(), last.end());
-  }
-}
-
-// Joins fronts with those above them whose columns follow at once. A few zeros are cheaper than
-// many small fronts.
-template <int B>
-void FrontalFactors<B>::join_fronts() {
-  std::vector<Front> joined;
-  std::vector<double> zeros;  // blocks, in each of these
-  for (Front front : fronts_) {
-    double added = 0;
-    while (!joined.empty()) {
-      const Front& last = joined.back();
-      const bool follows = last.first + last.count == front.first && last.below > 0 &&
-                           rows_[last.rows] < front.first + front.count;
-      if (!follows) break;
-      const double more =
-          added + zeros.back() + last.count * static_cast<double>(front.size() - last.below);
-      const double columns = last.count + front.count;
-      const double all = columns * (columns + 1) / 2 + columns * front.below;
-      const double part = more / all;
-      const int wide = B * (last.count + front.count);
-      const bool good = wide <= kFew || part < (wide <= kSome   ? kOfSome
-                                                : wide <= kMany ? kOfMany
-                                                                : kOfMore);
-      if (!good) break;
-      front.first = last.first;
-      front.count += last.count;
-      added = more;
-      joined.pop_back();
-      zeros.pop_back();
-    }
-    joined.push_back(front);
-    zeros.push_back(added);
-  }
-  fronts_ = std::move(joined);
-  std::vector<int> of_column(nth(size_));
-  for (size_t f = 0; f < fronts_.size(); ++f) {
-    for (int c = 0; c < fronts_[f].count; ++c)
-      of_column[nth(fronts_[f].first + c)] = static_cast<int>(f);
-  }
-  for (size_t f = 0; f < fronts_.size(); ++f) {
-    if (fronts_[f].below == 0) continue;
-    const auto parent = nth(of_column[nth(rows_[fronts_[f].rows])]);
-    fronts_[f].parent = static_cast<int>(parent);
-    fronts_[f].sibling = std::exchange(fronts_[parent].child, static_cast<int>(f));
-  }
-}
-
-// The places of the factors, and room for the largest front and for what fronts leave.
-template <int B>
-void FrontalFactors<B>::measure_fronts() {
-  size_t factors = 0, tallest = 0, panel = 0, left = 0, most = 0;
-  std::vector<size_t> of_children(fronts_.size(), 0);  // what they leave
-  for (size_t f = 0; f < fronts_.size(); ++f) {
-    Front& front = fronts_[f];
-    const size_t height = nth(B * front.size());
-    const size_t below = nth(B * front.below);
-    tallest = std::max(tallest, height);
-    front.factor = factors;
-    factors += height * nth(B * front.count);
-    panel = std::max(panel, height * nth(B * front.count));
-    left -= of_children[f];
-    left += below * below;
-    most = std::max(most, left);
-    if (front.parent >= 0) of_children[nth(front.parent)] += below * below;
-  }
-  lower_.resize(factors);
+  order_ = Elimination(size, std::move(pairs), B);
+  const Elimination::Room& room = order_.room();
+  lower_.resize(kBlock * room.factors);
   upper_.clear();
-  tallest_ = tallest;
-  front_.resize(tallest * tallest);
-  across_.resize(panel);
-  left_.resize(most);
-  local_.assign(nth(size_), 0);
-  pivot_.resize(nth(size_));
-  inverse_.resize(nth(size_));
-  below_.resize(row_.size());
-  above_.resize(row_.size());
-  diagonal_.resize(nth(size_));
+  front_.resize(kBlock * room.height * room.height);
+  across_.resize(kBlock * room.columns);
+  left_.resize(kBlock * room.left);
+  local_.assign(nth(size), 0);
+  for (std::vector<Block>* blocks : {&pivot_, &inverse_, &diagonal_}) blocks->resize(nth(size));
+  for (std::vector<Block>* blocks : {&below_, &above_}) blocks->resize(order_.entries());
 }
 
 template <int B>
 typename FrontalFactors<B>::Block& FrontalFactors<B>::at(int row, int column) {
-  const int r = place_[nth(row)], c = place_[nth(column)];
+  const int r = order_.place(row), c = order_.place(column);
   if (r == c) return diagonal_[nth(r)];
-  const auto k = nth(std::min(r, c));
-  const auto found =
-      std::lower_bound(row_.begin() + first_[k], row_.begin() + first_[k + 1], std::max(r, c));
-  const auto i = static_cast<size_t>(found - row_.begin());
+  const std::span<const int> rows = order_.rows_of_column(nth(std::min(r, c)));
+  const auto found = std::ranges::lower_bound(rows, std::max(r, c));
+  const size_t i =
+      order_.first_entry(nth(std::min(r, c))) + static_cast<size_t>(found - rows.begin());
   return r < c ? above_[i] : below_[i];
 }
 
@@ -366,7 +139,7 @@ bool FrontalFactors<B>::factorise(bool symmetric) {
   symmetric_ = symmetric;
   if (!symmetric) upper_.resize(lower_.size());
   top_ = 0;
-  for (const Front& front : fronts_) {
+  for (const Front& front : order_.fronts()) {
     assemble(front, symmetric);
     if (!eliminate(front, symmetric)) return false;
     keep_factors(front, symmetric);
@@ -381,7 +154,7 @@ void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
   const DenseColumns to{front_.data(), height};
   std::fill_n(front_.begin(), nth(height) * nth(height), 0.);
   for (int c = 0; c < front.count; ++c) local_[nth(front.first + c)] = B * c;
-  const std::span<const int> rows = rows_of(front);
+  const std::span<const int> rows = order_.rows_of(front);
   for (int r = 0; r < front.below; ++r) {
     local_[nth(rows[nth(r)])] = B * (front.count + r);
   }
@@ -393,11 +166,12 @@ void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
   for (int c = 0; c < front.count; ++c) {
     const auto k = nth(front.first + c);
     put(diagonal_[k], B * c, B * c);
-    for (int p = first_[k]; p < first_[k + 1]; ++p) {
-      const auto entry = nth(p);
-      const int row = local_[nth(row_[entry])];
+    size_t entry = order_.first_entry(k);
+    for (const int below : order_.rows_of_column(k)) {
+      const int row = local_[nth(below)];
       put(below_[entry], row, B * c);
       if (!symmetric) put(above_[entry], B * c, row);
+      ++entry;
     }
   }
   take_left(front, symmetric);
@@ -407,12 +181,12 @@ void FrontalFactors<B>::assemble(const Front& front, bool symmetric) {
 template <int B>
 void FrontalFactors<B>::take_left(const Front& front, bool symmetric) {
   const DenseColumns to{front_.data(), B * front.size()};
-  for (int f = front.child; f >= 0; f = fronts_[nth(f)].sibling) {
-    const Front& child = fronts_[nth(f)];
+  for (int f = front.child; f >= 0; f = order_.fronts()[nth(f)].sibling) {
+    const Front& child = order_.fronts()[nth(f)];
     const int height = B * child.below;
     top_ -= nth(height) * nth(height);
     const DenseColumns from{&left_[top_], height};
-    const std::span<const int> rows = rows_of(child);
+    const std::span<const int> rows = order_.rows_of(child);
     for (int c = 0; c < child.below; ++c) {
       const int column = local_[nth(rows[nth(c)])];
       for (int r = symmetric ? c : 0; r < child.below; ++r) {
@@ -486,8 +260,8 @@ void FrontalFactors<B>::keep_factors(const Front& front, bool symmetric) {
   const auto height = nth(B * front.size());
   const auto columns = nth(B * front.count), below = height - columns;
   const size_t count = height * columns;
-  std::copy_n(front_.data(), count, &lower_[front.factor]);
-  if (!symmetric) std::copy_n(across_.data(), count, &upper_[front.factor]);
+  std::copy_n(front_.data(), count, &lower_[kBlock * front.factor]);
+  if (!symmetric) std::copy_n(across_.data(), count, &upper_[kBlock * front.factor]);
   for (size_t c = 0; c < below; ++c) {
     std::copy_n(&front_[(columns + c) * height + columns], below, &left_[top_ + c * below]);
   }
@@ -496,15 +270,16 @@ void FrontalFactors<B>::keep_factors(const Front& front, bool symmetric) {
 
 template <int B>
 void FrontalFactors<B>::solve(std::span<double> x) const {
-  const auto n = nth(size_);
-  std::vector<double> y(B * n), here(tallest_);
+  const auto n = nth(order_.size());
+  const std::span<const Front> fronts = order_.fronts();
+  std::vector<double> y(B * n), here(B * order_.room().height);
   for (size_t i = 0; i < n; ++i) {
-    std::copy_n(&x[B * i], B, &y[B * nth(place_[i])]);
+    std::copy_n(&x[B * i], B, &y[B * nth(order_.place(static_cast<int>(i)))]);
   }
-  for (const Front& front : fronts_) solve_down(front, y, here);
-  for (size_t f = fronts_.size(); f-- > 0;) solve_up(fronts_[f], y, here);
+  for (const Front& front : fronts) solve_down(front, y, here);
+  for (size_t f = fronts.size(); f-- > 0;) solve_up(fronts[f], y, here);
   for (size_t i = 0; i < n; ++i) {
-    std::copy_n(&y[B * nth(place_[i])], B, &x[B * i]);
+    std::copy_n(&y[B * nth(order_.place(static_cast<int>(i)))], B, &x[B * i]);
   }
 }
 
@@ -514,7 +289,7 @@ void FrontalFactors<B>::gather(const Front& front, std::span<const double> y,
                                std::span<double> here) const {
   std::copy_n(&y[nth(B * front.first)], B * front.count, here.begin());
   auto to = here.begin() + B * front.count;
-  for (const int row : rows_of(front)) to = std::copy_n(&y[nth(B * row)], B, to);
+  for (const int row : order_.rows_of(front)) to = std::copy_n(&y[nth(B * row)], B, to);
 }
 
 // y := L^-1 y, for the columns of a front.
@@ -523,7 +298,7 @@ void FrontalFactors<B>::solve_down(const Front& front, std::span<double> y,
                                    std::span<double> here) const {
   gather(front, y, here);
   const int columns = B * front.count, height = B * front.size();
-  const double* column = &lower_[front.factor];
+  const double* column = &lower_[kBlock * front.factor];
   for (int k = 0; k < columns; ++k, column += height) {
     const double value = here[nth(k)];
     for (int row = (k / B + 1) * B; row < height; ++row) {
@@ -532,7 +307,7 @@ void FrontalFactors<B>::solve_down(const Front& front, std::span<double> y,
   }
   std::copy_n(here.begin(), columns, &y[nth(B * front.first)]);
   auto from = here.begin() + columns;
-  for (const int row : rows_of(front)) {
+  for (const int row : order_.rows_of(front)) {
     std::copy_n(from, B, &y[nth(B * row)]);
     from += B;
   }
@@ -549,7 +324,7 @@ void FrontalFactors<B>::solve_up(const Front& front, std::span<double> y,
     Eigen::Map<Part> part(&here[nth(B * k)]);
     Part sum;
     for (int j = 0; j < B; ++j) {
-      const double* column = &across[front.factor + nth(B * k + j) * nth(height)];
+      const double* column = &across[kBlock * front.factor + nth(B * k + j) * nth(height)];
       double product = 0;
       for (int row = B * (k + 1); row < height; ++row) {
         product += column[row] * here[nth(row)];

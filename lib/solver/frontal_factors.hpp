@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "lib/solver/elimination.hpp"
+
 namespace apothem {
 
 template <int B>
@@ -22,7 +24,7 @@ class FrontalFactors {
   using Block = Eigen::Matrix<double, B, B, Eigen::DontAlign>;
   using Part = Eigen::Matrix<double, B, 1, Eigen::DontAlign>;
 
-  /// Finds an order of elimination (approximate minimum degree) and the fronts.
+  /// Finds the order of elimination and the fronts.
   /// `pairs`: blocks (row, column) of the matrix off its diagonal, those on one side of it; may
   /// repeat.
   void analyse(int size, std::vector<std::pair<int, int>> pairs);
@@ -44,23 +46,6 @@ class FrontalFactors {
   }
 
  private:
-  // Columns that are eliminated together.
-  struct Front {
-    int first = 0, count = 0;  // columns
-    int parent = -1;           // the front that gets what is left
-    int child = -1;            // the last front whose parent this one is
-    int sibling = -1;          // the one before this one that has the same parent
-    size_t rows = 0;           // where its rows below begin in rows_
-    int below = 0;             // their number
-    size_t factor = 0;         // where its columns of L and rows of U begin in lower_ and upper_
-    [[nodiscard]] int size() const { return count + below; }
-  };
-  void order(const std::vector<std::pair<int, int>>& pairs);
-  void place_blocks(std::vector<std::pair<int, int>>& pairs);
-  [[nodiscard]] std::vector<int> find_parents() const;
-  void find_fronts();
-  void join_fronts();
-  void measure_fronts();
   void assemble(const Front& front, bool symmetric);
   bool eliminate(const Front& front, bool symmetric);
   bool eliminate_block(const Front& front, int k, int end, bool symmetric);
@@ -69,24 +54,18 @@ class FrontalFactors {
   void gather(const Front& front, std::span<const double> y, std::span<double> here) const;
   void solve_down(const Front& front, std::span<double> y, std::span<double> here) const;
   void solve_up(const Front& front, std::span<double> y, std::span<double> here) const;
-  [[nodiscard]] std::span<const int> rows_of(const Front& front) const {
-    return {rows_.data() + front.rows, static_cast<size_t>(front.below)};
-  }
 
-  int size_ = 0;
-  std::vector<int> place_;  // of each block in the order of elimination
-  // The matrix below the diagonal, column by column: row, block there, and block across.
-  std::vector<int> first_, row_;
+  static constexpr size_t kBlock = B * B;
+
+  Elimination order_;
+  // The matrix below the diagonal, column by column in that order, and across it.
   std::vector<Block> below_, above_, diagonal_;
-  std::vector<Front> fronts_;
-  std::vector<int> rows_;              // below the columns of each front, ascending
   std::vector<double> lower_, upper_;  // columns of L, and rows of U as columns, of each front
   std::vector<Block> pivot_, inverse_;
   bool symmetric_ = true;
   // The front at hand, column by column; its rows of U, as columns; what fronts have left.
   std::vector<double> front_, across_, left_;
   size_t top_ = 0;          // end of what is left
-  size_t tallest_ = 0;      // coordinates of the largest front
   std::vector<int> local_;  // row in the front at hand of each row of the matrix
 };
 

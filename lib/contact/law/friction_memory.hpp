@@ -130,6 +130,10 @@ class FrictionMemory {
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
   /// Replaces the springs and boundary segments, in ascending order of their keys, at a restart.
   void restore(std::vector<Spring> springs, std::vector<PatchSegment> segments);
+  /// Dashpots exert no force any more.
+  void forget_pushes() {
+    for (Spring& spring : springs_.now()) spring.push = 0;
+  }
   /// Sets the dissipated energies to zero.
   void start_ledger() { loss_ = damping_loss_ = 0; }
 
