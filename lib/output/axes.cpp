@@ -136,6 +136,19 @@ void Axes::draw(Canvas& canvas, bool below, bool left) const {
               {kNames, Align::centre, true});
 }
 
+namespace {
+
+Ticks scale_ticks(const Axis& axis, double low, double high, double height) {
+  return make_ticks(axis, low, high, std::max(2, static_cast<int>(height / 25)));
+}
+
+}  // namespace
+
+double colour_scale_width(const Canvas& ruler, const Axis& axis, double low, double high,
+                          double height) {
+  return ruler.text_width(scale_ticks(axis, low, high, height).name, kNames);
+}
+
 void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,
                        bool values_below, bool values_above) {
   constexpr int kColours = 256;
@@ -153,8 +166,7 @@ void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, doubl
   };
   if (values_below) point(frame.y1, frame.y1 + height, viridis(0));
   if (values_above) point(frame.y0, frame.y0 - height, viridis(1));
-  const Ticks ticks =
-      make_ticks(axis, low, high, std::max(2, static_cast<int>((frame.y1 - frame.y0) / 25)));
+  const Ticks ticks = scale_ticks(axis, low, high, frame.y1 - frame.y0);
   for (size_t i = 0; i < ticks.places.size(); ++i) {
     const double at = frame.y1 - (ticks.places[i] - low) / (high - low) * (frame.y1 - frame.y0);
     canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, kFrame);

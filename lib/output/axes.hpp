@@ -49,6 +49,10 @@ class Axes {
   Axis x_, y_;
 };
 
+/// How wide the name above a colour scale of this height is, in points.
+double colour_scale_width(const Canvas& ruler, const Axis& axis, double low, double high,
+                          double height);
+
 /// Draws a vertical continuous colour scale for [low, high] with numbers at round values and the
 /// axis' name above. A triangle at an end shows that there are values beyond it.
 void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,

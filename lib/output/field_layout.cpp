@@ -187,6 +187,12 @@ PanelLayout lay_out(const FieldPanel& panel, size_t at_once, const Canvas& ruler
   choose_colours(panel, all, layout);
   list_categories(panel, ruler, layout);
   choose_lines(panel, layout);
+  if (layout.categories.empty()) {
+    const double name =
+        colour_scale_width(ruler, {panel.quantity->symbol, panel.unit}, layout.low,
+                           layout.high_value, std::min(layout.frames_height(), kBarHigh));
+    layout.right = std::max(layout.right, kBarGap + name + kColumnGap);
+  }
   double texts = ruler.text_width(heading(panel), kTitleFont);
   for (const std::string& note : layout.notes) {
     texts = std::max(texts, kNoteText + ruler.text_width(note, kNoteFont));

@@ -17,7 +17,7 @@ inline constexpr double kFrameLeft = 62;
 inline constexpr double kColumnGap = 22, kRowGap = 8;
 inline constexpr double kBelow = 40;     // numbers and name of x
 inline constexpr double kNoteLine = 20;  // a line of explanation below
-inline constexpr double kBarGap = 26, kBarWidth = 14;
+inline constexpr double kBarGap = 26, kBarWidth = 14, kBarHigh = 230;
 inline constexpr double kCategory = 20;  // from line to line of a legend
 inline constexpr size_t kMostCategories = 20;
 inline constexpr double kTitleFont = 12, kLabelFont = 10.5, kNoteFont = 10;

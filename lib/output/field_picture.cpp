@@ -16,7 +16,6 @@ namespace {
 
 // Lengths in points.
 constexpr double kTop = 36, kBottom = 8;
-constexpr double kBarHigh = 230;
 constexpr double kFigureFont = 14;
 
 void draw_frame(Canvas& canvas, const FieldPanel& panel, const PanelLayout& layout,

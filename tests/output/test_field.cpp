@@ -353,6 +353,21 @@ TEST_CASE("elements of any shape leave no pixel out", "[field][slow]") {
   }
 }
 
+TEST_CASE("the name above a colour scale is not cut off", "[field]") {
+  Frame frame = at_rest(1);
+  frame.stress[0].xx = 1e-4;
+  frame.stress[1].xx = 3e-4;
+  FieldPanel panel = panel_of(field_of(frame, quantity("sxx")), "sxx");
+  panel.unit = "a unit that is long";
+  panel.window = Box{0, 0, .2, 3};  // narrow
+  const Pixels pixels = decode(draw_fields({"", {panel}}, PictureFormat::png));
+  int ink = 0;
+  for (int y = 0; y < pixels.height; ++y) {
+    for (int x = pixels.width - 4; x < pixels.width; ++x) ink += pixels.at(x, y) != 0xffffff;
+  }
+  CHECK(ink == 0);
+}
+
 TEST_CASE("a value that is no number is grey, not a crash", "[field]") {
   Frame frame = at_rest(1);
   frame.stress[0].xx = std::nan("");
