@@ -288,7 +288,7 @@ template <int B>
 void FrontalFactors<B>::gather(const Front& front, std::span<const double> y,
                                std::span<double> here) const {
   std::copy_n(&y[nth(B * front.first)], B * front.count, here.begin());
-  auto to = here.begin() + B * front.count;
+  double* to = here.data() + nth(B * front.count);
   for (const int row : order_.rows_of(front)) to = std::copy_n(&y[nth(B * row)], B, to);
 }
 

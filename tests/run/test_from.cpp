@@ -294,6 +294,36 @@ TEST_CASE("an equilibrium may begin with another run, whose dashpots do not coun
   CHECK((run.state().pose(1) - fall.state().pose(1)).norm() < .1);
 }
 
+TEST_CASE("dashpots of a run that is over do not hold a block on a slope", "[from]") {
+  const Folder folder;
+  const bool meshed = GENERATE(false, true);
+  CAPTURE(meshed);
+  const auto text = [&](const char* damping, const char* time) {
+    return fmt::format(
+        R"({{ "gravity": [1, -9.81], "materials": {{ "rock": {{ "density": 2000, "young": 1e8, "poisson": 0.2 }} }},
+    "contact": {{ "normal_stiffness": 1e6, "friction": {{ "coefficient": 0.08 }}{} }},
+    "bodies": [ {{ "name": "floor", "material": "rock", "motion": "fixed",
+                  "polygon": [[-5, -1], [5, -1], [5, 0], [-5, 0]] }},
+                {{ "name": "block", "material": "rock", {} }} ],
+    "time": {} }})",
+        damping,
+        meshed
+            ? R"("mesh": { "rectangle": { "size": [1, 0.5], "cells": [4, 2], "origin": [0, 0.002] }, "element": "Q4" })"
+            : R"("polygon": [[0, 0.002], [1, 0.002], [1, 0.502], [0, 0.502]])",
+        time);
+  };
+  // It presses on the floor, and dashpots press as much.
+  Run fall(scene_of(folder, text(R"(, "damping": { "model": "viscous", "ratio": 0.5 })",
+                                 R"({ "end": 0.025 })")),
+           {.folder = folder / "first"});
+  fall.run();
+  CHECK(fall.state().force(0)[1] < -1000);
+  Run run(scene_of(folder, text("", R"({ "mode": "static", "end": 1, "load_steps": 1 })")),
+          {.folder = "", .from = folder / "first"});
+  CHECK(run.run() == Run::Status::unstable);
+  CHECK_THAT(run.message(), Catch::Contains("\"block\" slides on \"floor\""));
+}
+
 TEST_CASE("a packing comes to rest with contacts a hundred times stiffer", "[from]") {
   const Folder folder;
   const auto text = [](const char* stiffness, const char* time) {
