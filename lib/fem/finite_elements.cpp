@@ -466,56 +466,63 @@ CauchyStress FiniteElements::stress(std::span<const double> u, int set, int elem
   return result;
 }
 
-// Calls f(row, column, stiffness) for all entries of the matrices of all elements; x of node 0 is
-// 0.
-template <class F>
-void FiniteElements::each_stiffness(std::span<const double> u, F&& f) const {
-  constexpr int kAtOnce = 8;  // derivatives that are found in one pass over an element
+// Calls f(coordinates, matrix) with the stiffness matrix of every element, row after row; x of node
+// 0 is 0.
+void FiniteElements::each_stiffness(
+    std::span<const double> u,
+    const std::function<void(std::span<const size_t>, std::span<const double>)>& f) const {
+  constexpr size_t kAtOnce = 8;  // derivatives that are found in one pass over an element
   using Number = Dual<kAtOnce>;
   std::vector<Point<Number>> moved, force;
+  std::vector<size_t> coordinates;
+  std::vector<double> matrix;
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
                                      int element, const Point<double>* w) {
     const ElementSet& set = sets_[index];
-    const std::span<const int> nodes = set.mesh->element(element);
-    const auto coordinate = [&](int i) {
-      return 2 * static_cast<size_t>(set.first_node + nodes[static_cast<size_t>(i / 2)]) +
-             static_cast<size_t>(i % 2);
-    };
-    moved.resize(static_cast<size_t>(corners));
-    force.resize(static_cast<size_t>(corners));
+    coordinates.clear();
+    for (const int node : set.mesh->element(element)) {
+      const size_t x = 2 * static_cast<size_t>(set.first_node + node);
+      coordinates.insert(coordinates.end(), {x, x + 1});
+    }
+    const size_t size = coordinates.size();
+    matrix.resize(size * size);
+    moved.resize(size / 2);
+    force.resize(size / 2);
     const Elastic& elastic = material(index, element).elastic;
     with_law(elastic, [&]<class Law>(const Law& law) {
       const Response<Law, false> response(law, elastic, 0, set.thickness);
-      for (int from = 0; from < 2 * corners; from += kAtOnce) {
-        const int end = std::min(from + kAtOnce, 2 * corners);
-        for (int i = 0; i < corners; ++i) moved[static_cast<size_t>(i)] = {w[i].x, w[i].y};
-        for (int j = from; j < end; ++j) {
-          Point<Number>& point = moved[static_cast<size_t>(j / 2)];
-          (j % 2 ? point.y : point.x).d.v[j - from] = 1;
+      for (size_t from = 0; from < size; from += kAtOnce) {
+        const size_t end = std::min(from + kAtOnce, size);
+        for (size_t i = 0; i < size / 2; ++i) moved[i] = {w[i].x, w[i].y};
+        for (size_t j = from; j < end; ++j) {
+          (j % 2 ? moved[j / 2].y : moved[j / 2].x).d.v[j - from] = 1;
         }
         Number power(0.);
         Element::force(Stored<Number>{data.base}, response, corners, moved.data(), moved.data(),
                        force.data(), power);
-        for (int i = 0; i < 2 * corners; ++i) {
-          const Point<Number>& point = force[static_cast<size_t>(i / 2)];
-          const Number& component = i % 2 ? point.y : point.x;
-          for (int j = from; j < end; ++j) {
-            f(coordinate(i), coordinate(j), component.d.v[j - from]);
-          }
+        for (size_t i = 0; i < size; ++i) {
+          const Number& component = i % 2 ? force[i / 2].y : force[i / 2].x;
+          for (size_t j = from; j < end; ++j) matrix[i * size + j] = component.d.v[j - from];
         }
       }
     });
+    f(coordinates, matrix);
   });
 }
 
 void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
   std::ranges::fill(sums, 0.);
-  each_stiffness(u, [&](size_t row, size_t, double k) { sums[row] += std::abs(k); });
+  each_stiffness(u, [&](std::span<const size_t> at, std::span<const double> k) {
+    for (size_t i = 0; i < k.size(); ++i) sums[at[i / at.size()]] += std::abs(k[i]);
+  });
 }
 
 void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const {
-  each_stiffness(
-      u, [&](size_t row, size_t column, double k) { tangent.add(first + row, first + column, k); });
+  each_stiffness(u, [&](std::span<const size_t> at, std::span<const double> k) {
+    for (size_t i = 0; i < k.size(); ++i) {
+      tangent.add(first + at[i / at.size()], first + at[i % at.size()], k[i]);
+    }
+  });
 }
 
 FiniteElements::Collapse FiniteElements::smallest_ratio(std::span<const double> u) const {

@@ -16,6 +16,7 @@
 
 #include <boost/align/aligned_allocator.hpp>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -163,8 +164,9 @@ class FiniteElements {
              F&& f) const;
   template <class F>
   void each_element(std::span<const double> u, F&& f) const;
-  template <class F>
-  void each_stiffness(std::span<const double> u, F&& f) const;
+  void each_stiffness(
+      std::span<const double> u,
+      const std::function<void(std::span<const size_t>, std::span<const double>)>& f) const;
 
   std::vector<ElementSet> sets_;
   std::vector<Behaviour> behaviours_;

@@ -1,10 +1,10 @@
 #include "lib/fem/spectrum.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
 #include "geometry/polygon/random_numbers.hpp"
+#include "lib/solver/eigen_pairs.hpp"
 
 namespace apothem {
 namespace {
@@ -54,12 +54,9 @@ double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
     if (!beside.empty()) next -= beside.back() * before;
     const double rest = next.norm();
     if (step % 5 == 0 || rest == 0) {
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
-      small.computeFromTridiagonal(
-          Eigen::Map<const Vector>(diagonal.data(), step),
-          Eigen::Map<const Vector>(beside.data(), static_cast<Eigen::Index>(beside.size())));
-      const double largest = small.eigenvalues()[step - 1];
-      const double residual = rest * std::abs(small.eigenvectors()(step - 1, step - 1));
+      const EigenPairs small = tridiagonal_pairs(diagonal, beside);
+      const double largest = small.values[step - 1];
+      const double residual = rest * std::abs(small.vectors(step - 1, step - 1));
       const double found = largest + residual;
       // Two successive results must agree: one small residual may belong to a lower eigenvalue.
       if (residual < kAccuracy * largest && std::abs(found - answer) < kAccuracy * largest) {

@@ -1,10 +1,8 @@
 // Linear buckling: (K_0 + f K_s) phi = 0 with K_s = K_1 - K_0.
-#include <Spectra/SymGEigsSolver.h>
-
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "lib/solver/eigen_pairs.hpp"
 #include "lib/solver/symmetric_system.hpp"
 
 namespace apothem {
@@ -14,8 +12,8 @@ using Vector = SymmetricSystem::Vector;
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr Eigen::Index kDenseBuckling = 120;  // coordinates up to which dense matrices are faster
-constexpr double kRitz = 1e-11;               // tolerance of Ritz values, relative
-constexpr int kMostRestarts = 1000, kMostRounds = 20;
+constexpr double kTension = 1e-11;  // above 1, of eigenvalues of the inverse: what is no tension
+constexpr int kMostRounds = 20;
 constexpr double kAbove = 1e-6;  // of a factor: nearer ones count as multiple
 constexpr int kMostTriesOfFactor = 8;
 constexpr double kStride = 8, kBracket = 1.5;  // ratios of factors that are tried
@@ -26,41 +24,22 @@ struct Buckle {
   Vector shape;  // of the norm 1 in K_0
 };
 
-// K_0 as the left-hand matrix and the inner product, and the inverse of K_0 + s K_s as that of the
-// right-hand one, without the pairs that are known: the eigenvalues f/(f - s) of their product are
-// largest for the factors f next above s.
-class Product {
- public:
-  using Scalar = double;
-  explicit Product(const Sparse& base) : base_(base) {}
-  [[nodiscard]] Eigen::Index rows() const { return base_.rows(); }
-  [[nodiscard]] Eigen::Index cols() const { return base_.cols(); }
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Vector>(out, rows()) = base_ * Eigen::Map<const Vector>(in, rows());
-  }
-
- protected:
-  const Sparse& base_;
-};
-class Shifted : public Product {
- public:
-  Shifted(const Sparse& base, const SymmetricSystem& inverse, double shift,
-          const std::vector<Buckle>& known)
-      : Product(base), inverse_(inverse), shift_(shift), known_(known) {}
-  void solve(const double* in, double* out) const {
-    const Vector b = Eigen::Map<const Vector>(in, rows());
-    Vector x = inverse_.solve(b);
-    for (const Buckle& k : known_) {
-      x -= k.factor / (k.factor - shift_) * k.shape.dot(b) * k.shape;
-    }
-    Eigen::Map<Vector>(out, rows()) = x;
-  }
-
- private:
-  const SymmetricSystem& inverse_;
-  double shift_;
-  const std::vector<Buckle>& known_;
-};
+// The largest pairs of (K_0 + s K_s)^-1 K_0, which is symmetric in the inner product of K_0,
+// without those that are known: the eigenvalues f/(f - s) are largest for the factors f next above
+// s.
+EigenPairs next_pairs(const Sparse& base, const SymmetricSystem& inverse, double shift,
+                      Eigen::Index count, const std::vector<Buckle>& known) {
+  const Eigen::Index size = base.rows();
+  const auto matrix = [&](const double* in, double* out) {
+    const Vector b = base * Eigen::Map<const Vector>(in, size);
+    Vector x = inverse.solve(b);
+    for (const Buckle& k : known) x -= k.factor / (k.factor - shift) * k.shape.dot(b) * k.shape;
+    Eigen::Map<Vector>(out, size) = x;
+  };
+  return largest_pairs(size, count, matrix, [&](const double* in, double* out) {
+    Eigen::Map<Vector>(out, size) = base * Eigen::Map<const Vector>(in, size);
+  });
+}
 
 void refuse_soft(SymmetricSystem& system) {
   if (system.count_below(system.least()) > 0) {
@@ -72,11 +51,10 @@ void refuse_soft(SymmetricSystem& system) {
 
 // The positive factors, ascending.
 std::vector<Buckle> dense_buckles(const Sparse& change, const Sparse& base) {
-  const Eigen::MatrixXd left = change, right = base;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> all(left, right);
+  const EigenPairs all = dense_pairs(Eigen::MatrixXd(change), Eigen::MatrixXd(base));
   std::vector<Buckle> found;
-  for (Eigen::Index i = 0; i < left.rows() && all.eigenvalues()[i] < 0; ++i) {
-    found.push_back({-1 / all.eigenvalues()[i], all.eigenvectors().col(i)});
+  for (Eigen::Index i = 0; i < base.rows() && all.values[i] < 0; ++i) {
+    found.push_back({-1 / all.values[i], all.vectors.col(i)});
   }
   return found;
 }
@@ -136,18 +114,11 @@ std::vector<Buckle> lowest_buckles(const SymmetricSystem& base, const LoadPath& 
   const SymmetricSystem inverse = path.at(shift);
   int wanted = count;
   for (int round = 0; round < kMostRounds && wanted > 0; ++round) {
-    Product product(base.matrix());
-    Shifted shifted(base.matrix(), inverse, shift, found);
     const Eigen::Index most = std::min<Eigen::Index>(wanted, base.size() - 1);
-    Spectra::SymGEigsSolver<Product, Shifted, Spectra::GEigsMode::RegularInverse> lanczos(
-        product, shifted, most, std::min(base.size(), std::max(2 * most + 1, most + 20)));
-    lanczos.init();
-    lanczos.compute(Spectra::SortRule::LargestAlge, kMostRestarts, kRitz);
-    const Vector values = lanczos.eigenvalues();
-    const Eigen::MatrixXd vectors = lanczos.eigenvectors();
+    const auto [values, vectors] = next_pairs(base.matrix(), inverse, shift, most, found);
     const size_t before = found.size();
     for (Eigen::Index i = 0; i < values.size(); ++i) {
-      if (!(values[i] > 1 + kRitz)) continue;  // of tension
+      if (!(values[i] > 1 + kTension)) continue;  // of tension
       const Vector shape = vectors.col(i);
       found.push_back({shift * values[i] / (values[i] - 1),
                        shape / std::sqrt(shape.dot(base.matrix() * shape))});

@@ -1,10 +1,10 @@
 #include "lib/solver/linear_solver.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "lib/solver/eigen_pairs.hpp"
 #include "lib/solver/frontal_factors.hpp"
 
 namespace apothem {
@@ -156,10 +156,7 @@ int LinearSolver::negative_pivots(double noise) const {
   std::vector<double> pivots;
   f.use([&](auto& blocks) {
     blocks.each_pivot([&](const auto& d) {
-      const Eigen::MatrixXd whole = (d + d.transpose()) / 2;
-      const Eigen::VectorXd values =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(whole, Eigen::EigenvaluesOnly)
-              .eigenvalues();
+      const Eigen::VectorXd values = dense_pairs((d + d.transpose()) / 2).values;
       pivots.insert(pivots.end(), values.begin(), values.end());
     });
   });

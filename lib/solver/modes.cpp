@@ -1,13 +1,10 @@
 #include "lib/solver/modes.hpp"
 
-#include <Spectra/SymEigsSolver.h>
-#include <Spectra/SymGEigsSolver.h>
-
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "lib/solver/eigen_pairs.hpp"
 #include "lib/solver/symmetric_system.hpp"
 
 namespace apothem {
@@ -18,53 +15,33 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr Eigen::Index kDense = 120;  // coordinates up to which dense matrices are faster
 constexpr int kShareOfDense = 3;      // of many modes likewise: those asked for times that
-constexpr double kTolerance = 1e-11;  // of Ritz values, relative
-constexpr int kRestarts = 1000;
-constexpr int kMostPasses = 40;      // of the Lanczos method, until no mode is missing
-constexpr double kBeyond = 1e-7;     // of an eigenvalue: nearer ones count as multiple
-constexpr double kShiftRatio = 4;    // up to which a shift is sought
-constexpr int kInverseSteps = 4;     // for small eigenvalues
-constexpr double kNothing = 1e-9;    // of what may be rounding: what vectors of others leave
-constexpr double kNearer = 1e-3;     // their shift, of that of the others
-constexpr double kDependent = 1e-6;  // of the norm: what is left of a dependent vector
+constexpr int kMostPasses = 40;       // of the Lanczos method, until no mode is missing
+constexpr double kBeyond = 1e-7;      // of an eigenvalue: nearer ones count as multiple
+constexpr double kShiftRatio = 4;     // up to which a shift is sought
+constexpr int kInverseSteps = 4;      // for small eigenvalues
+constexpr double kNothing = 1e-9;     // of what may be rounding: what vectors of others leave
+constexpr double kNearer = 1e-3;      // their shift, of that of the others
+constexpr double kDependent = 1e-6;   // of the norm: what is left of a dependent vector
 
 struct EigenPair {
   double value;
   Vector vector;
 };
 
-// Pairs of a symmetric operator in the inner product of `Space` that are known are taken out.
-struct Known {
-  std::vector<EigenPair> pairs;
-  [[nodiscard]] Vector without(Vector y, const Vector& x) const {
-    for (const EigenPair& p : pairs) y -= p.value * p.vector.dot(x) * p.vector;
-    return y;
-  }
-};
-
-// M^1/2 (K - s M)^-1 M^1/2, whose eigenvalues are 1/(w^2 - s), without the known pairs.
-class Inverse {
- public:
-  using Scalar = double;
-  Inverse(const SymmetricSystem& system, const Known& known)
-      : system_(system), known_(known), root_(system.mass().cwiseSqrt()) {}
-  [[nodiscard]] Eigen::Index rows() const { return system_.size(); }
-  [[nodiscard]] Eigen::Index cols() const { return rows(); }
-  void perform_op(const double* in, double* out) const {
-    const Vector x = Eigen::Map<const Vector>(in, rows());
-    Vector y = root_.cwiseProduct(system_.solve(root_.cwiseProduct(x)));
-    Eigen::Map<Vector>(out, rows()) = known_.without(std::move(y), x);
-  }
-
- private:
-  const SymmetricSystem& system_;
-  const Known& known_;
-  Vector root_;
-};
-
-// Lanczos vectors for so many pairs.
-Eigen::Index breadth(Eigen::Index size, Eigen::Index pairs) {
-  return std::min(size, std::max(2 * pairs + 1, pairs + 20));
+// The largest pairs of M^1/2 (K - s M)^-1 M^1/2, whose eigenvalues are 1/(w^2 - s), without those
+// that are known.
+EigenPairs largest_inverse_pairs(const SymmetricSystem& system, Eigen::Index count,
+                                 const std::vector<EigenPair>& known) {
+  const Vector root = system.mass().cwiseSqrt();
+  const Eigen::Index size = system.size();
+  const auto inverse = [&](const double* in, double* out) {
+    const Vector x = Eigen::Map<const Vector>(in, size);
+    Vector y = root.cwiseProduct(system.solve(root.cwiseProduct(x)));
+    for (const EigenPair& p : known) y -= p.value * p.vector.dot(x) * p.vector;
+    Eigen::Map<Vector>(out, size) = y;
+  };
+  return largest_pairs(size, count, inverse,
+                       [&](const double* in, double* out) { std::copy_n(in, size, out); });
 }
 
 // Puts eigenvalues of several passes in order: by w^2 in ascending order.
@@ -76,19 +53,13 @@ void sort_by_value(std::vector<EigenPair>& pairs) {
 // w^2 and vectors M^1/2 phi.
 std::vector<EigenPair> lowest_above(SymmetricSystem& system, double shift, int base, int need) {
   std::vector<EigenPair> found;
-  Known known;
   int wanted = need;
   for (int pass = 0; pass < kMostPasses && wanted > 0; ++pass) {
     const double at = system.shift(shift);
-    known.pairs.clear();
-    for (const EigenPair& p : found) known.pairs.push_back({1 / (p.value - at), p.vector});
-    Inverse inverse(system, known);
+    std::vector<EigenPair> known;
+    for (const EigenPair& p : found) known.push_back({1 / (p.value - at), p.vector});
     const Eigen::Index most = std::min<Eigen::Index>(wanted, system.size() - 1);
-    Spectra::SymEigsSolver<Inverse> lanczos(inverse, most, breadth(system.size(), most));
-    lanczos.init();
-    lanczos.compute(Spectra::SortRule::LargestAlge, kRestarts, kTolerance);
-    const Vector values = lanczos.eigenvalues();
-    const Matrix vectors = lanczos.eigenvectors();
+    const auto [values, vectors] = largest_inverse_pairs(system, most, known);
     const size_t before = found.size();
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (values[i] > 0) found.push_back({at + 1 / values[i], vectors.col(i).normalized()});
@@ -203,13 +174,13 @@ struct Parts {
 };
 
 Parts dense_parts(const SymmetricSystem& system) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> all(dense_scaled(system));
+  const EigenPairs all = dense_pairs(dense_scaled(system));
   const double least = system.least();
   Parts parts;
   for (Eigen::Index i = 0; i < system.size(); ++i) {
-    const double value = all.eigenvalues()[i];
+    const double value = all.values[i];
     auto& part = value < -least ? parts.negative : value < least ? parts.small : parts.positive;
-    part.push_back({value, all.eigenvectors().col(i)});
+    part.push_back({value, all.vectors.col(i)});
   }
   parts.below = static_cast<int>(parts.negative.size());
   parts.within = static_cast<int>(parts.small.size());
@@ -244,12 +215,12 @@ std::vector<EigenPair> sort_small(const SymmetricSystem& system, Parts& parts) {
   const Vector inverse_root = system.mass().cwiseSqrt().cwiseInverse();
   const Matrix shapes = inverse_root.asDiagonal() * vectors;
   const Matrix stiffness = shapes.transpose() * (system.matrix() * shapes);
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver((stiffness + stiffness.transpose()) / 2);
+  const EigenPairs pairs = dense_pairs((stiffness + stiffness.transpose()) / 2);
   std::vector<EigenPair> rounding;
   std::vector<EigenPair> soft;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Vector part = solver.eigenvectors().col(i), shape = shapes * part;
-    const double value = solver.eigenvalues()[i];
+    const Vector part = pairs.vectors.col(i), shape = shapes * part;
+    const double value = pairs.values[i];
     const double rounded = shape.cwiseProduct(system.rounding()).dot(shape);
     const bool known = std::abs(value) > std::max(rounded, kNothing * system.least());
     (!known ? rounding : value < 0 ? parts.negative : soft).push_back({value, vectors * part});
