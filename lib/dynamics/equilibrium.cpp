@@ -13,6 +13,8 @@
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/mesh/measure.hpp"
+#include "lib/model/inradius.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 namespace {
@@ -72,6 +74,9 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
     }
   }
   extent_ = scene.extent();
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
+    inradius_.push_back(is_free(model, b) ? inradius_of(model, b) : 0);
+  }
 }
 
 // Friction follows the displacements since `slips_from_`, in one step of 1 s.
@@ -356,15 +361,14 @@ LoadStep Equilibrium::find_near(State& state, Ledger& ledger, double time,
   return result;
 }
 
-// Whether a free rigid body has left the neighbourhood of the last equilibrium, whose places are
-// `from`.
+// Whether a free body has left the neighbourhood of the last equilibrium, whose places are `from`.
 bool Equilibrium::strays(const State& state, const std::vector<double>& from) const {
-  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
-    const RigidBody& body = model_.bodies[i];
-    if (body.motion != Motion::free) continue;
-    const Eigen::Vector3d way = state.pose(i) - Eigen::Vector3d::Map(&from[state.layout.rigid(i)]);
-    const double moved = hypotenuse(way[0], way[1]) + radius()[i] * std::abs(way[2]);
-    if (!(moved <= kNear * body.inradius + driven_way_)) return true;
+  State start = state;
+  start.x = from;
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
+    if (inradius_[b] == 0) continue;
+    const double way = motion_of(model_, state, start, b).most();
+    if (!(way <= kNear * inradius_[b] + driven_way_)) return true;
   }
   return false;
 }

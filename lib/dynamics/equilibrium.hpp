@@ -35,7 +35,7 @@ class Equilibrium {
   /// so: the next call with the same time goes on where it has stopped, bit for bit. Throws
   /// Unstable if there is no equilibrium in reach; the state is then not to be trusted.
   LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
-  /// The same by Newton's method alone, for an equilibrium near that of `state`: no free rigid body
+  /// The same by Newton's method alone, for an equilibrium near that of `state`: no free body
   /// moves farther than prescribed motion does and a part of its inradius. If there is none,
   /// LoadStep::found is false, the state is as it was, and `motion` is the way that the bodies have
   /// begun to go instead: a change of all coordinates.
@@ -207,14 +207,15 @@ class Equilibrium {
   std::vector<std::uint8_t> free_;
   std::optional<NewtonPath> newton_pause_;
   std::int64_t iterations_ = 0;
-  std::vector<double> lambda_;  // of rigid bodies: stiffness / inertia, 1/s^2
-  std::vector<double> flat_;    // of rigid bodies: stiffness if they lay flat on each other, N/m
-  double extent_ = 0;           // of the scene, m
-  bool tangent_known_ = true;   // false if a term does not know its tangent
-  Departure departure_;         // what the first body does that leaves its place
-  BodyIndex departed_ = -1;     // this body
-  Departure at_end_;            // where the search has ended: the body that had moved farthest
-  double loads_ = 0;            // largest norm in an equilibrium so far, N
+  std::vector<double> lambda_;    // of rigid bodies: stiffness / inertia, 1/s^2
+  std::vector<double> flat_;      // of rigid bodies: stiffness if they lay flat on each other, N/m
+  std::vector<double> inradius_;  // of free bodies; of others 0, m
+  double extent_ = 0;             // of the scene, m
+  bool tangent_known_ = true;     // false if a term does not know its tangent
+  Departure departure_;           // what the first body does that leaves its place
+  BodyIndex departed_ = -1;       // this body
+  Departure at_end_;              // where the search has ended: the body that had moved farthest
+  double loads_ = 0;              // largest norm in an equilibrium so far, N
   std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
   double loads_now_ = 0;                // the same with the state that is tried
   std::vector<double> body_loads_now_;  // likewise

@@ -12,8 +12,6 @@
 #include "lib/dynamics/departure.hpp"
 #include "lib/dynamics/equilibrium.hpp"
 #include "lib/dynamics/unstable.hpp"
-#include "lib/model/inradius.hpp"
-#include "lib/model/statistics.hpp"
 
 namespace apothem {
 namespace {
@@ -297,7 +295,7 @@ bool Equilibrium::note_departure(const State& state, const State& before) {
   const BodyIndex mover = farthest_mover(state, before);
   if (mover < 0) return true;
   const double way = motion_of(model_, state, before, mover).most();
-  if (departed_ < 0 && way > kNear * inradius_of(model_, mover) + driven_way_) {
+  if (departed_ < 0 && way > kNear * inradius_[mover] + driven_way_) {
     departed_ = mover;
     departure_ = departure_of(mover, state, before);
   }
@@ -309,8 +307,8 @@ BodyIndex Equilibrium::farthest_mover(const State& state, const State& before) c
   double farthest = 0;
   BodyIndex mover = -1;
   for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
-    if (!is_free(model_, b)) continue;
-    const double part = motion_of(model_, state, before, b).most() / inradius_of(model_, b);
+    if (inradius_[b] == 0) continue;
+    const double part = motion_of(model_, state, before, b).most() / inradius_[b];
     if (part > farthest) farthest = part, mover = b;
   }
   return mover;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/boundary.hpp"
 #include "lib/run/collapse.hpp"
 #include "lib/run/load_path.hpp"
 
@@ -91,34 +92,75 @@ Model stiffened(Model model, double scale) {
   return model;
 }
 
-double stiffest(const Model& model) {
+namespace {
+
+// What a contact of a body makes of the rounding of its places, N per Pa of k_n: another body lies
+// flat on its longest side.
+double rounded(const Model& model, double place, double slope, double longest) {
+  return std::numeric_limits<double>::epsilon() * place * 2 * model.thickness * slope * longest;
+}
+double rounded(const Model& model, const RigidBody& body) {
+  double longest = 0, radius = 0;
+  for (int i = 0; i < body.potential.size(); ++i) {
+    const Vec2& vertex = body.potential.vertices[i];
+    radius = std::max(radius, vertex.norm());
+    longest = std::max(longest, (body.potential.vertices[body.potential.next(i)] - vertex).norm());
+  }
+  const double place = std::abs(body.position.x()) + std::abs(body.position.y()) + radius;
+  return rounded(model, place, body.potential.steepest, longest);
+}
+double rounded(const Model& model, const DeformableBody& body) {
+  const Box box = box_of(body.mesh.nodes);
+  const double place =
+      std::max(std::abs(box.x0), std::abs(box.x1)) + std::max(std::abs(box.y0), std::abs(box.y1));
+  return rounded(model, place, 1 / boundary_inradius(body.mesh, boundary(body.mesh)), box.extent());
+}
+
+}  // namespace
+
+double stiffest(const Model& model, std::span<const double> forces) {
   const double g = model.strongest_gravity();
   double most = HUGE_VAL;
-  for (const RigidBody& body : model.bodies) {
+  const auto bound = [&](double force, double noise) {
+    if (force > 0) most = std::min(most, kRounded * force / noise);
+  };
+  const size_t rigid = model.bodies.size();
+  for (size_t i = 0; i < rigid; ++i) {
+    const RigidBody& body = model.bodies[i];
     if (body.motion != Motion::free) continue;
-    double longest = 0, radius = 0;
-    for (int i = 0; i < body.potential.size(); ++i) {
-      const Vec2& vertex = body.potential.vertices[i];
-      radius = std::max(radius, vertex.norm());
-      longest =
-          std::max(longest, (body.potential.vertices[body.potential.next(i)] - vertex).norm());
-    }
-    // Of a body that lies flat on another one, per Pa of k_n: see Equilibrium.
-    const double flat = 2 * model.thickness * body.potential.steepest * longest;
-    const double place = std::abs(body.position.x()) + std::abs(body.position.y()) + radius;
-    const double rounded = std::numeric_limits<double>::epsilon() * place * flat;
-    most = std::min(most, kRounded * body.mass * g / rounded);
+    bound(g > 0 ? body.mass * g : forces.empty() ? 0 : forces[i], rounded(model, body));
+  }
+  if (forces.empty()) return most;
+  for (size_t d = 0; d < model.deformables.size(); ++d) {
+    bound(forces[rigid + d], rounded(model, model.deformables[d]));
   }
   return most;
 }
 
 namespace {
 
-// One pass: the load path to its end or to the limit. Returns where the bodies are in the end, or
-// nothing if an equilibrium has not been found.
-std::optional<State> walk(const Model& model, const TimeSettings& time, int threads,
-                          const std::function<bool()>& stop, RigidPass& pass) {
+// The end of one pass.
+struct End {
+  State state;
+  std::vector<double> forces;  // that press on each body in its last equilibrium, N
+};
+
+std::vector<double> forces_on_bodies(const Model& model, const Simulation& simulation) {
+  std::vector<double> forces(model.bodies.size() + model.deformables.size(), 0);
+  for (const ContactRecord& contact : simulation.contacts()) {
+    for (const BodyIndex body : {contact.a, contact.b}) {
+      forces[static_cast<size_t>(body)] += contact.normal.norm();
+    }
+  }
+  return forces;
+}
+
+// One pass: the load path to its end or to the limit. Returns nothing if an equilibrium has not
+// been found.
+std::optional<End> walk(const Model& model, const TimeSettings& time, int threads,
+                        const std::function<bool()>& stop, RigidPass& pass) {
   Simulation simulation(model, time, 1, threads, stop);
+  std::vector<double> forces(model.bodies.size() + model.deformables.size(), 0);
   LoadPath path(time.end);
   std::vector<double> motion;
   while (simulation.state().time < time.end * (1 - 1e-12)) {
@@ -127,18 +169,21 @@ std::optional<State> walk(const Model& model, const TimeSettings& time, int thre
     if (!found.complete) throw Stopped();
     if (found.found) {
       path.found(next);
+      forces = forces_on_bodies(model, simulation);
     } else if (path.missed(before, next)) {
       // Without a mechanism it is the search that has failed.
       if (!is_mechanism(model, simulation.state(), motion)) return {};
       pass.collapsed = true;
       pass.lower = before, pass.upper = next;
-      return simulation.state();
+      return End{simulation.state(), forces};
     }
   }
   pass.lower = pass.upper = time.end;
-  return simulation.state();
+  return End{simulation.state(), forces};
 }
 
+// The longest way between two states of a point of a free body: of a rigid one over its inradius,
+// of nodes over the longest way that one of the body has gone.
 double change_of_places(const Model& model, const State& a, const State& b) {
   double most = 0;
   for (RigidIndex i = 0; i < a.layout.rigid_bodies; ++i) {
@@ -148,6 +193,16 @@ double change_of_places(const Model& model, const State& a, const State& b) {
     double radius = 0;
     for (const Vec2& v : body.potential.vertices) radius = std::max(radius, v.norm());
     most = std::max(most, (way.head<2>().norm() + radius * std::abs(way[2])) / body.inradius);
+  }
+  for (const DeformableBody& body : model.deformables) {
+    double longest = 0, change = 0;
+    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+      const size_t c = a.layout.node(body.first_node + static_cast<NodeIndex>(i));
+      const Vec2 displacement(&b.x[c]);
+      longest = std::max(longest, displacement.norm());
+      change = std::max(change, (displacement - Vec2(&a.x[c])).norm());
+    }
+    if (longest > 0) most = std::max(most, change / longest);
   }
   return most;
 }
@@ -168,18 +223,22 @@ bool stands_still(const RigidLimit& limit) {
 
 RigidLimit find_rigid_limit(const Model& model, const TimeSettings& time, int threads,
                             const std::function<bool()>& stop) {
-  const double most = stiffest(model), own = model.contact.normal_stiffness;
-  const double first = std::min(own, kSoftest * most);
+  const double own = model.contact.normal_stiffness;
+  double most = stiffest(model, {}), stiffness = std::min(own, kSoftest * most);
   RigidLimit limit;
-  std::optional<State> before;
-  double stiffness = first;
+  std::optional<End> before;
   while (stiffness <= most * (1 + 1e-9)) {
     RigidPass pass{.stiffness = stiffness};
     const Model stiff = stiffened(model, stiffness / own);
-    std::optional<State> after = walk(stiff, time, threads, stop, pass);
+    std::optional<End> after = walk(stiff, time, threads, stop, pass);
     if (!after) break;
+    most = std::min(most, stiffest(model, after->forces));
+    if (limit.passes.empty() && stiffness > 2 * kSoftest * most) {
+      stiffness = kSoftest * most;  // what presses on the bodies is known only now
+      continue;
+    }
     limit.passes.push_back(pass);
-    if (before) limit.change = change_of_places(model, *before, *after);
+    if (before) limit.change = change_of_places(model, before->state, after->state);
     before = std::move(after);
     if (stands_still(limit)) break;
     stiffness *= kStiffer;

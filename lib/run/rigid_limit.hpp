@@ -41,11 +41,12 @@ struct RigidPass {
 };
 
 struct RigidLimit {
-  static constexpr double kTolerance = 1e-3;  ///< of the load factor, or of inradii
+  static constexpr double kTolerance = 1e-3;  ///< of the load factor, or of `change`
 
   std::vector<RigidPass> passes;
-  /// Between the last two passes: the longest way of a point of a free body over its inradius, at
-  /// the end of runs that do not collapse.
+  /// Between the last two passes, at the end of runs that do not collapse: the longest way of a
+  /// point of a free rigid body over its inradius, or of a node over the longest way that a node of
+  /// its body has gone under the loads.
   double change = 0;
   void fields(Archive& archive) { archive("passes", passes)("change", change); }
 
@@ -58,8 +59,10 @@ struct RigidLimit {
 Model stiffened(Model model, double scale);
 
 /// The largest k_n (Pa) for which the rounding of places changes the forces on no body by more
-/// than a two-millionth of its weight.
-double stiffest(const Model& model);
+/// than a two-millionth of its weight or, of a body with a mesh and where nothing has weight, of
+/// what presses on it: `forces` (N), of rigid bodies first. Where these are not known yet, it may
+/// be empty.
+double stiffest(const Model& model, std::span<const double> forces);
 
 /// Passes from the model's own stiffness on, or from a thousandth of stiffest() if that is less,
 /// each with ten times the stiffness of the one before, until the results stand still within

@@ -131,6 +131,69 @@ TEST_CASE("a block on a tilting table topples or slides at the angle of theory",
   }
 }
 
+TEST_CASE("a block of finite elements on a tilting table does what theory says", "[rigid_limit]") {
+  const Folder folder;
+  const auto [width, friction, young] =
+      GENERATE(std::tuple(.4, .8, 1e11), std::tuple(.9, .3, 1e9), std::tuple(.55, .9, 1e11));
+  const double exact = std::atan(std::min(width, friction));
+  const bool rigid = GENERATE(true, false);
+  CAPTURE(width, friction, young, rigid);
+  Run run(scene_of(folder, fmt::format(R"({{
+    "gravity": {{ "value": [0, -9.81], "direction_history": [[0, 0], [1.2, 1.2]] }},
+    "materials": {{ "rock": {{ "density": 2000, "young": {}, "poisson": 0.2 }} }},
+    "contact": {{ "normal_stiffness": 1e10, "rigid": {}, "friction": {{ "coefficient": {} }} }},
+    "bodies": [
+      {{ "name": "table", "material": "rock", "motion": "fixed", "polygon": [[-3, -1], [3, -1], [3, 0], [-3, 0]] }},
+      {{ "name": "block", "material": "rock",
+         "mesh": {{ "rectangle": {{ "size": [{}, 1], "cells": [4, 6] }}, "element": "Q4" }} }} ],
+    "time": {{ "mode": "static", "end": 1.2, "load_steps": "auto" }} }})",
+                                       young, rigid, friction, width)),
+          {folder.path() + "/" + "out"});
+  CHECK(run.run() == Run::Status::done);
+  const Collapse* const collapse = run.collapse();
+  REQUIRE(collapse != nullptr);
+  CAPTURE(collapse->factor(), collapse->error(), exact);
+  // Without the limit it tips over earlier, because the corner that presses yields.
+  const double early = rigid ? 3e-4 : .02;
+  CHECK(collapse->factor() <= exact * (1 + 1e-4) + collapse->error());
+  CHECK(collapse->factor() >= exact * (1 - early) - collapse->error());
+  if (rigid) CHECK(collapse->error() <= 1e-3 * exact);
+}
+
+TEST_CASE("pressed meshes shorten in the rigid limit as one body does", "[rigid_limit]") {
+  const Folder folder;
+  const bool on_rigid = GENERATE(false, true);
+  CAPTURE(on_rigid);
+  const double young = 2e10, poisson = .2, pressure = 2e7;
+  const std::string lower =
+      on_rigid ? R"("motion": "fixed", "polygon": [[-1, 0], [2, 0], [2, 0.5], [-1, 0.5]])"
+               : R"("mesh": { "rectangle": { "size": [1, 0.5], "cells": [7, 4] }, "element": "Q4" },
+        "supports": [ { "where": { "y": 0 }, "fix": ["y"] }, { "where": { "nearest": [0.5, 0] }, "fix": ["x"] } ])";
+  Run run(scene_of(folder, fmt::format(R"({{
+    "materials": {{ "rock": {{ "density": 2000, "young": {}, "poisson": {}, "plane": "strain" }} }},
+    "contact": {{ "normal_stiffness": 1e10, "rigid": true }},
+    "bodies": [ {{ "name": "lower", "material": "rock", {} }},
+      {{ "name": "upper", "material": "rock",
+         "mesh": {{ "rectangle": {{ "size": [1, 0.5], "cells": [10, 5], "origin": [0, 0.5] }}, "element": "Q4" }},
+         "supports": [ {{ "where": {{ "nearest": [0.5, 1] }}, "fix": ["x"] }} ],
+         "loads": [ {{ "where": {{ "group": "top" }}, "traction": [0, -2e7], "history": [[0, 0], [1, 1]] }} ] }} ],
+    "time": {{ "mode": "static", "end": 1, "load_steps": "auto" }} }})",
+                                       young, poisson, lower)),
+          {folder.path() + "/" + "out"});
+  CHECK(run.run() == Run::Status::done);
+  CHECK(run.collapse() == nullptr);
+  const DeformableBody& upper = run.scene().model.deformables.back();
+  double top = 0;
+  for (NodeIndex i = 0; i < static_cast<NodeIndex>(upper.mesh.nodes.size()); ++i) {
+    if (upper.mesh.nodes[i].y() == 1) top = run.state().node(upper.first_node + i).y();
+  }
+  const double height = on_rigid ? .5 : 1;
+  const double shortening = (1 - poisson * poisson) * pressure / young * height;
+  CHECK(-top == Approx(shortening).epsilon(2 * RigidLimit::kTolerance));
+  CHECK(run.rigid_limit().change <= RigidLimit::kTolerance);
+  CHECK(run.rigid_limit().passes.size() >= 3);
+}
+
 TEST_CASE("loads that can be carried end with their last step", "[rigid_limit]") {
   const Folder folder;
   Run run(scene_of(folder, text_of({2, .5, 1.6, R"(, "rigid": true)", R"("tolerance": 1e-6)"})),

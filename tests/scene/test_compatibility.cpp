@@ -204,7 +204,6 @@ const std::vector<FeatureTrial> kTrials{
     {F::start, F::static_run, kStatic, {{"/time/start", "\"as_given\""}}, "/time/start"},
     {F::load_steps, F::dynamic_run, kMeshed, {{"/time/load_steps", "4"}}, "/time/load_steps"},
     {F::rigid_limit, F::dynamic_run, kRigid, {{"/contact/rigid", "true"}}, "/contact/rigid"},
-    {F::rigid_limit, F::body_with_mesh, kStatic, {{"/contact/rigid", "true"}}, "/contact/rigid"},
     {F::rigid_limit,
      F::counted_load_steps,
      kRigid,
