@@ -291,7 +291,10 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
       keep(verdict == Verdict::found, result);
       return result;
     }
-    if (tangent_known_) refuse(state, result);
+    // Where bodies of finite elements stick and slip on stiff contacts the method may go round in
+    // circles at an equilibrium.
+    const bool circles = !settling_ && departed_ < 0 && !model_.deformables.empty();
+    if (tangent_known_ && !circles) refuse(state, result);
     state = before;
   }
   return relax(state, before, time, stop);
@@ -362,10 +365,12 @@ LoadStep Equilibrium::find_near(State& state, Ledger& ledger, double time,
 }
 
 // Whether a free body has left the neighbourhood of the last equilibrium, whose places are `from`.
+// While weight grows, bodies of finite elements may come farther until they are held.
 bool Equilibrium::strays(const State& state, const std::vector<double>& from) const {
   State start = state;
   start.x = from;
-  for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
+  const size_t count = weight_grows_ ? model_.bodies.size() : body_loads_.size();
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(count); ++b) {
     if (inradius_[b] == 0) continue;
     const double way = motion_of(model_, state, start, b).most();
     if (!(way <= kNear * inradius_[b] + driven_way_)) return true;

@@ -18,10 +18,10 @@ namespace apothem {
 class ContactTerm;
 class FrictionMemory;
 
-/// Newton's method, and dynamic relaxation where a term does not know its tangent. Friction is
-/// followed from load step to load step: within one, it is a function of the displacements since
-/// its start, so that the way to the equilibrium leaves no trace. Where bodies settle it follows
-/// their way.
+/// Newton's method, and dynamic relaxation where a term does not know its tangent, or where bodies
+/// of finite elements make the method go round in circles. Friction is followed from load step to
+/// load step: within one, it is a function of the displacements since its start, so that the way to
+/// the equilibrium leaves no trace. Where bodies settle it follows their way.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;
@@ -99,7 +99,7 @@ class Equilibrium {
   Verdict finish_polishing(State& state, LoadStep& result, const NewtonPath& path);
   void begin_share(const State& state, NewtonPath& path);
   static void begin_polishing(const State& state, NewtonPath& path);
-  static void note_residual(double residual, NewtonPath& path);
+  void note_residual(double residual, NewtonPath& path) const;
   [[nodiscard]] bool is_stuck(const NewtonPath& path) const;
   [[nodiscard]] bool is_step_found(const State& state, const NewtonPath& path, double now) const;
   [[nodiscard]] double growth_after(const NewtonPath& path) const;

@@ -107,13 +107,23 @@ double Equilibrium::reach(size_t c) const {
   return (c < first_ ? kReach : kNodeReach) * lengths_.of(c);
 }
 
-// The first shift: with it nothing moves farther than its reach by the forces out of balance.
+// The first shift: with it nothing moves farther than its reach by the forces out of balance. If
+// there are none yet, they are those that prescribed motion brings, where it presses as far as it
+// goes.
 double Equilibrium::first_shift() const {
-  double shift = 0;
-  for (size_t c = 0; c < rest_.size(); ++c) {
-    if (!held(c)) shift = std::max(shift, std::abs(rest_[c]) / dofs_.mass(c) / reach(c));
-  }
-  return near_ ? shift / kNearReach : shift;
+  const auto shift_of = [&](auto force) {
+    double shift = 0;
+    for (size_t c = 0; c < rest_.size(); ++c) {
+      if (!held(c)) shift = std::max(shift, force(c) / dofs_.mass(c) / reach(c));
+    }
+    return near_ ? shift / kNearReach : shift;
+  };
+  const double shift = shift_of([&](size_t c) { return std::abs(rest_[c]); });
+  if (shift > 0) return shift;
+  return shift_of([&](size_t c) {
+    const double stiffness = c < first_ ? flat_[c / 3] : model_.stiffness();
+    return stiffness * driven_way_ * (c < first_ && c % 3 == 2 ? radius()[c / 3] : 1);
+  });
 }
 
 // K + M/h^2 at the present places, and its solution. In the first iteration of a share prescribed
@@ -246,10 +256,10 @@ void Equilibrium::begin_polishing(const State& state, NewtonPath& path) {
 
 // Prescribed motion comes with the first iteration of a share, and brings forces that are mostly
 // gone once bodies have given way.
-void Equilibrium::note_residual(double residual, NewtonPath& path) {
+void Equilibrium::note_residual(double residual, NewtonPath& path) const {
   if (path.in_step == 0) {
     path.at_start = residual;
-  } else if (path.in_step == 1 && path.setting_out) {
+  } else if (path.in_step == 1 && path.setting_out && driven_way_ > 0) {
     path.at_start = std::max(path.at_start, kGivenWay * residual);
   }
   if (path.in_step % kLookEvery == kFirstLook) {

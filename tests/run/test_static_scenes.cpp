@@ -241,6 +241,49 @@ bool is_reason(const std::string& message) {
 }  // namespace
 }  // namespace static_scenes
 
+TEST_CASE("what only prescribed motion presses is in equilibrium, whatever it is", "[static]") {
+  const Folder folder;
+  const bool base = GENERATE(false, true), middle = GENERATE(false, true),
+             top = GENERATE(false, true);
+  const double friction = GENERATE(0., .5), stiffness = GENERATE(1e7, 1e9);
+  CAPTURE(base, middle, top, friction, stiffness);
+  // Of finite elements or rigid, one on the other; nothing has weight, and nothing is pressed at
+  // first.
+  const auto body = [&](const char* name, double y, double width, bool meshed,
+                        const std::string& rigid, const std::string& nodes) {
+    return fmt::format(
+        R"({{ "name": "{}", "material": "rock", {} }})", name,
+        meshed
+            ? fmt::format(
+                  R"("mesh": {{ "rectangle": {{ "size": [{}, 1], "cells": [5, 4], "origin": [{}, {}] }}, "element": "Q4" }} {})",
+                  width, -width / 2, y, nodes)
+            : fmt::format(R"("polygon": [[{0}, {2}], [{1}, {2}], [{1}, {3}], [{0}, {3}]] {4})",
+                          -width / 2, width / 2, y, y + 1, rigid));
+  };
+  const std::string scene = fmt::format(
+      R"({{ "materials": {{ "rock": {{ "density": 2000, "young": 1e9, "poisson": 0.2 }} }},
+    "contact": {{ "normal_stiffness": {}, "friction": {{ "coefficient": {} }} }},
+    "bodies": [ {}, {}, {} ],
+    "time": {{ "mode": "static", "end": 1, "load_steps": 2 }} }})",
+      stiffness, friction,
+      body("base", -1, 3, base, R"(, "motion": "fixed")",
+           R"(, "supports": [{ "where": { "y": -1 }, "fix": ["x", "y"] }])"),
+      body("middle", 0, 1, middle, "", ""),
+      body(
+          "top", 1, 2, top, R"(, "motion": { "velocity": [[0, 0, -0.001], [1, 0, -0.001]] })",
+          R"(, "supports": [{ "where": { "y": 2 }, "velocity": [[0, 0, -0.001], [1, 0, -0.001]] }])"));
+  Run run(scene_of(folder, scene), {folder.path() + "/out"});
+  REQUIRE(run.run() == Run::Status::done);
+  double pressed = 0, other = 0;
+  for (const ContactRecord& c : run.simulation().contacts()) {
+    const Model& model = run.scene().model;
+    const bool below = model.name_of(c.a) == "base" || model.name_of(c.b) == "base";
+    (below ? pressed : other) += std::abs(c.normal.y() + c.tangential.y());
+  }
+  CHECK(pressed > 0);
+  CHECK(pressed == Approx(other).epsilon(1e-6));
+}
+
 TEST_CASE("random static scenes come to equilibria, or are refused with the reason", "[static]") {
   using namespace static_scenes;
   SeededRandom random(45);
