@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/polygon/point.hpp"
+#include "lib/dynamics/departure.hpp"
 
 namespace apothem {
 namespace {
@@ -14,34 +15,24 @@ constexpr double kMoves = 0.01;      // of the longest way
 constexpr double kMechanism = 0.01;  // of an inradius
 constexpr double kShown = 0.05;      // of the size of all free bodies
 
-// The mean motion of the nodes of a deformable body, and the longest way of one.
-MovingBody motion_of_nodes(const Model& model, const State& state, DeformableIndex d,
-                           const std::vector<double>& motion) {
-  const DeformableBody& body = model.deformables[static_cast<size_t>(d)];
-  MovingBody result{static_cast<BodyIndex>(model.bodies.size()) + d, 0, 0, 0, 0};
-  const auto n = static_cast<NodeIndex>(body.mesh.nodes.size());
-  for (NodeIndex i = 0; i < n; ++i) {
-    const Vec2 way(&motion[state.layout.node(body.first_node + i)]);
-    result.x += way.x() / n, result.y += way.y() / n;
-    result.most = std::max(result.most, way.norm());
-  }
-  return result;
-}
-
 std::vector<MovingBody> all_bodies(const Model& model, const State& state,
                                    const std::vector<double>& motion) {
+  State from(state.layout), to(state.layout);
+  to.x = motion;
   std::vector<MovingBody> all;
-  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
-    const double* const way = &motion[state.layout.rigid(i)];
-    double radius = 0;
-    for (const Vec2& v : model.bodies[static_cast<size_t>(i)].potential.vertices) {
-      radius = std::max(radius, v.norm());
+  const size_t count = model.bodies.size() + model.deformables.size();
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(count); ++b) {
+    const BodyShift way = motion_of(model, to, from, b);
+    double most = way.most();
+    if (b >= state.layout.rigid_bodies) {
+      const DeformableBody& body =
+          model.deformables[static_cast<size_t>(b - state.layout.rigid_bodies)];
+      most = 0;
+      for (NodeIndex i = 0; i < static_cast<NodeIndex>(body.mesh.nodes.size()); ++i) {
+        most = std::max(most, to.node(body.first_node + i).norm());
+      }
     }
-    all.push_back(
-        {i, way[0], way[1], way[2], Vec2(way[0], way[1]).norm() + radius * std::abs(way[2])});
-  }
-  for (DeformableIndex d = 0; d < static_cast<DeformableIndex>(model.deformables.size()); ++d) {
-    all.push_back(motion_of_nodes(model, state, d, motion));
+    all.push_back({b, way.shift.x(), way.shift.y(), way.turn, most});
   }
   return all;
 }

@@ -27,7 +27,8 @@ struct Collapse {
   [[nodiscard]] double error() const { return rigid ? rigid->error : (upper - lower) / 2; }
 };
 
-/// How a body takes part in a mechanism: the motion of its mass centre and its rotation.
+/// How a body takes part in a mechanism: the motion of its mass centre and its rotation; of a body
+/// with a mesh those of its nodes in the mean.
 struct MovingBody {
   BodyIndex body;
   double x, y;   ///< m

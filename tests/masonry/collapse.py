@@ -56,6 +56,20 @@ def blocks_of(scene):
     return limit_analysis.Blocks(rings, fixed, scene["contact"]["friction"]["coefficient"])
 
 
+def with_meshes(scene, every, size):
+    """The scene with every n-th free block of stiff finite elements; all of them if every is 1."""
+    for material in scene["materials"].values():
+        material.update({"young": 1e11, "poisson": 0.2})
+    for i, body in enumerate(scene["bodies"]):
+        if body.get("motion") != "fixed" and i % every == 0:
+            body["mesh"] = {"fill": {"polygon": body.pop("polygon"), "size": size}}
+    return scene
+
+
+def of_meshes(every):
+    return "" if every == 0 else " of finite elements" if every == 1 else f", one of {every} of finite elements"
+
+
 def sector_masses(n, thickness, angle=math.pi, radius=10.):
     """Mass and centroid of voussoirs with curved faces, after those of the springings."""
     inner, outer, half = radius * (1 - thickness / 2), radius * (1 + thickness / 2), angle / n / 2
@@ -71,10 +85,10 @@ def hinges(rotations):
     return [(i, int(np.sign(j))) for i, j in enumerate(jumps) if abs(j) > 0.05 * np.abs(jumps).max()]
 
 
-def check_arch(program, n, thickness, degrees):
+def check_arch(program, n, thickness, degrees, meshed=0):
     scene = masonry.arch(n, thickness, math.radians(degrees))
     exact, mechanism = blocks_of(scene).largest_factor(DEAD, LATERAL)
-    found = run(program, scene)
+    found = run(program, with_meshes(scene, meshed, .8) if meshed else scene)
     collapse = found["collapse"]
     moved = {body["body"]: body["angle"] for body in collapse["bodies"]}
     angles = np.array([moved.get(f"voussoir {i}", 0.) for i in range(n)])
@@ -82,28 +96,30 @@ def check_arch(program, n, thickness, degrees):
     if [s for _, s in wanted] != [s for _, s in got]:
         wanted = hinges(mechanism[:, 2])  # multipliers are known but for their sign
     error = collapse["factor"] / exact - 1
-    print(f"arch of {n}, t/R {thickness:g}, {degrees:g} degrees: {collapse['factor']:.6f} "
+    print(f"arch of {n}, t/R {thickness:g}, {degrees:g} degrees{of_meshes(meshed)}: {collapse['factor']:.6f} "
           f"({collapse['lower']:.6f} to {collapse['upper']:.6f}), limit analysis {exact:.6f}, {100 * error:+.3f} %; "
           f"hinges at joints {[i for i, _ in got]}, limit analysis {[i for i, _ in wanted]}; "
           f"{found['processor_time']:.1f} s", flush=True)
-    add_row(f"arch of {degrees:g} degrees, {n} voussoirs, joints {thickness:g} of the mean radius: lateral acceleration over g",
+    add_row(f"arch of {degrees:g} degrees, {n} voussoirs{of_meshes(meshed)}, joints {thickness:g} of the mean radius: lateral "
+            "acceleration over g",
             with_bounds(collapse), exact, error)
     assert abs(error) < 0.005
     assert got == wanted
     assert len(got) == 4
 
 
-def check_wall(program, rows, blocks, friction, width=.4, height=.2, closed_form=None):
+def check_wall(program, rows, blocks, friction, width=.4, height=.2, closed_form=None, meshed=0):
     scene = masonry.wall(rows, blocks, friction, width, height)
     exact = math.atan(blocks_of(scene).largest_factor(DEAD, (-masonry.GRAVITY, 0))[0])
-    found = run(program, scene)
+    found = run(program, with_meshes(scene, meshed, .1) if meshed else scene)
     collapse = found["collapse"]
     error = collapse["factor"] / exact - 1
-    print(f"wall of {rows} rows, {blocks} blocks of {width:g} m x {height:g} m each, mu {friction:g}: "
+    print(f"wall of {rows} rows, {blocks} blocks of {width:g} m x {height:g} m each{of_meshes(meshed)}, mu {friction:g}: "
           f"{collapse['factor']:.6f} rad ({collapse['lower']:.6f} to {collapse['upper']:.6f}), limit analysis {exact:.6f}"
           f"{'' if closed_form is None else f', closed form {closed_form:.6f}'}, {100 * error:+.3f} %; "
           f"{found['processor_time']:.1f} s", flush=True)
-    add_row(f"wall of {rows} rows of {blocks} blocks of {width:g} m x {height:g} m, friction {friction:g}, on a tilting table, rad",
+    add_row(f"wall of {rows} rows of {blocks} blocks of {width:g} m x {height:g} m{of_meshes(meshed)}, friction {friction:g}, "
+            "on a tilting table, rad",
             with_bounds(collapse), exact, error, ", an upper bound" if closed_form is None else ", closed form")
     if closed_form is not None:
         assert abs(exact / closed_form - 1) < 1e-6
@@ -149,7 +165,9 @@ def main():
     # A column that topples as a whole; a wall that slides as a whole.
     check_wall(program, 1, 1, .8, .4, 1, closed_form=math.atan(.4))
     check_wall(program, 3, 2, .3, closed_form=math.atan(.3))
+    check_wall(program, 3, 2, .3, closed_form=math.atan(.3), meshed=2)
     check_arch(program, 7, .15, 157.5)
+    check_arch(program, 7, .15, 157.5, meshed=1)
     if sys.argv[1:-1] != ["all"]:
         return
     check_wall(program, 2, 1, .8, .4, .5, closed_form=math.atan(.4))
