@@ -161,6 +161,7 @@ class DeformableReader {
       if (support.motion.velocity.empty()) {
         in_.fail(*velocity, "must hold at least one row; leave it out for a support at rest");
       }
+      require_held(*velocity, support);
     }
     rotation(object, support);
     object.finish();
@@ -175,6 +176,19 @@ class DeformableReader {
       }
     }
     body_.supports.push_back(std::move(support));
+  }
+
+  // A velocity moves nodes in the directions that the support holds.
+  void require_held(const JsonValue& velocity, const Support& support) const {
+    for (int axis = 0; axis < 2; ++axis) {
+      const bool moves = std::ranges::any_of(
+          support.motion.velocity, [&](const auto& row) { return row.velocity[axis] != 0; });
+      if (support.held[axis] || !moves) continue;
+      const char* const name = axis == 0 ? "x" : "y";
+      in_.fail(velocity, fmt::format("moves nodes along {0}, which the support does not hold: add "
+                                     "\"{0}\" to \"fix\", or make this component 0",
+                                     name));
+    }
   }
 
   // Of a support that turns its nodes about a point.

@@ -237,6 +237,8 @@ const std::vector<Broken> kBrokenMeshed{
      "missing key \"pivot\""},
     {"\"fix\": [\"x\", \"y\"]", "\"fix\": [\"x\"], \"spin\": [[0, 1]], \"pivot\": [0, 0]",
      ":6: /bodies/0/supports/0/spin", "both directions", false},
+    {"\"fix\": [\"x\", \"y\"]", "\"fix\": [\"x\"], \"velocity\": [[0, 0, 0], [1, 1, -2]]",
+     ":6: /bodies/0/supports/0/velocity", "moves nodes along y", false},
     {"\"fix\": [\"x\", \"y\"]", "\"spin\": [], \"pivot\": [0, 0]", ":6: /bodies/0/supports/0/spin",
      "at least one row", false},
     {"\"fix\": [\"x\", \"y\"]", "\"velocity\": [[0, 1, 0]], \"pivot\": [0, 0]",
