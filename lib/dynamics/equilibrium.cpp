@@ -300,26 +300,6 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
   return relax(state, before, time, stop);
 }
 
-// Newton's method has found nothing. Where a body has left its place that is the reason.
-void Equilibrium::refuse(const State& state, const LoadStep& result) const {
-  const auto rigid = static_cast<BodyIndex>(model_.bodies.size());
-  const std::string what =
-      departed_ >= 0 ? departure_.words
-                     : fmt::format("the search for one has come to an end where {}", at_end_.words);
-  throw Unstable(fmt::format("no equilibrium at t = {:.9g} s (load step {}): {}; {}", result.time,
-                             state.step, what, advice()),
-                 departed_ >= 0 && departed_ < rigid ? departed_ : -1);
-}
-
-// What helps where no equilibrium is found.
-std::string Equilibrium::advice() const {
-  if (!slip_.empty()) {
-    return "support it, let prescribed velocities begin at 0, or leave out time.start";
-  }
-  return settling_ ? "support it, or leave out time.start"
-                   : "support it, reduce the load, or raise time.load_steps";
-}
-
 void Equilibrium::keep(bool complete, LoadStep& result) {
   result.complete = complete;
   if (!complete) return;
@@ -362,20 +342,6 @@ LoadStep Equilibrium::find_near(State& state, Ledger& ledger, double time,
   }
   go_back(state, before);
   return result;
-}
-
-// Whether a free body has left the neighbourhood of the last equilibrium, whose places are `from`.
-// While weight grows, bodies of finite elements may come farther until they are held.
-bool Equilibrium::strays(const State& state, const std::vector<double>& from) const {
-  State start = state;
-  start.x = from;
-  const size_t count = weight_grows_ ? model_.bodies.size() : body_loads_.size();
-  for (BodyIndex b = 0; b < static_cast<BodyIndex>(count); ++b) {
-    if (inradius_[b] == 0) continue;
-    const double way = motion_of(model_, state, start, b).most();
-    if (!(way <= kNear * inradius_[b] + driven_way_)) return true;
-  }
-  return false;
 }
 
 // The state before a search that was stopped, or has found nothing.

@@ -3,13 +3,10 @@
 // motion enters the first iteration of a share by its columns of K, so that no element is torn at
 // first.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "lib/dynamics/contact_term.hpp"
-#include "lib/dynamics/departure.hpp"
 #include "lib/dynamics/equilibrium.hpp"
 #include "lib/dynamics/unstable.hpp"
 
@@ -35,7 +32,6 @@ constexpr int kLookEvery = 10, kFirstLook = 2;
 // less exactly, and their length follows from the iterations that they take.
 constexpr int kMostInSettling = 10, kMostOfSettling = 10000, kEasySettling = 3, kFairSettling = 6;
 constexpr double kSettlingTolerance = .1, kLittleLonger = 1.5;
-constexpr double kLost = 3;          // of the scene's size, beyond what prescribed motion does
 constexpr double kPolish = 1e-6;     // of the shift, from an equilibrium to round-off
 constexpr double kReach = 0.5;       // of a rigid body's inradius
 constexpr double kNearReach = 1e-3;  // of that, where the equilibrium is near
@@ -291,65 +287,6 @@ double Equilibrium::growth_after(const NewtonPath& path) const {
     return path.in_step <= kFairSettling ? kLittleLonger : 1;
   }
   return !near_ || path.in_step <= kEasy ? kLonger : 1;
-}
-
-// Whether the bodies are still where an equilibrium may be, at the end of an implicit step, while
-// their contacts tell what they do.
-bool Equilibrium::stays(const State& state, const State& before, const NewtonPath& path) {
-  const bool lost = !note_departure(state, before);
-  return near_ ? !strays(state, path.x_done) : !lost;
-}
-
-// Notes what the first body does that leaves its neighbourhood. False if a body is lost.
-bool Equilibrium::note_departure(const State& state, const State& before) {
-  const BodyIndex mover = farthest_mover(state, before);
-  if (mover < 0) return true;
-  const double way = motion_of(model_, state, before, mover).most();
-  if (departed_ < 0 && way > kNear * inradius_[mover] + driven_way_) {
-    departed_ = mover;
-    departure_ = departure_of(mover, state, before);
-  }
-  return way <= kLost * extent_ + driven_way_;
-}
-
-// The free body that has moved farthest, in parts of its inradius; -1 if none has moved.
-BodyIndex Equilibrium::farthest_mover(const State& state, const State& before) const {
-  double farthest = 0;
-  BodyIndex mover = -1;
-  for (BodyIndex b = 0; b < static_cast<BodyIndex>(body_loads_.size()); ++b) {
-    if (inradius_[b] == 0) continue;
-    const double part = motion_of(model_, state, before, b).most() / inradius_[b];
-    if (part > farthest) farthest = part, mover = b;
-  }
-  return mover;
-}
-
-Departure Equilibrium::departure_of(BodyIndex body, const State& state, const State& before) const {
-  return describe_departure(
-      model_, state, before, body,
-      contact_ ? contact_->contacts().records() : std::vector<ContactRecord>());
-}
-
-// Notes where the search ends that has found nothing: at the last implicit step.
-void Equilibrium::note_end(State& state, const State& before, const NewtonPath& path,
-                           const LoadStep& result) {
-  state.x = path.base;
-  const bool fine = try_forces(state);
-  for (const RigidIndex wall : walls_) {
-    if (!(motion_of(model_, state, before, wall).most() > kNear * model_.bodies[wall].inradius))
-      continue;
-    at_end_.words =
-        fmt::format("the servo wall \"{}\" goes on: what it presses on does not bear its force",
-                    model_.bodies[wall].name);
-    return;
-  }
-  const BodyIndex mover = farthest_mover(state, before);
-  if (fine && mover >= 0) {
-    at_end_ = departure_of(mover, state, before);
-    return;
-  }
-  at_end_.words = fmt::format("the forces on \"{}\" are out of balance",
-                              model_.name_of(std::max(result.unbalanced, 0)));
 }
 
 // Goes the step; where contacts may begin or end it is halved until the residual falls. Returns
