@@ -313,6 +313,7 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   driven_way_ = driven_way(before.time, time);
   LoadStep result = solve(state, before, time, stop);
   if (result.complete) {
+    note_move(state, before, result);
     book(before, state, ledger);
   } else {
     go_back(state, before);

@@ -106,6 +106,7 @@ class Equilibrium {
   [[nodiscard]] bool is_sound(const State& state) const;
   bool note_departure(const State& state, const State& before);
   [[nodiscard]] BodyIndex farthest_mover(const State& state, const State& before) const;
+  void note_move(const State& state, const State& before, LoadStep& result) const;
   [[nodiscard]] Departure departure_of(BodyIndex body, const State& state,
                                        const State& before) const;
   void note_end(State& state, const State& before, const NewtonPath& path, const LoadStep& result);

@@ -1,4 +1,4 @@
-// Where bodies are when Newton's method finds no equilibrium, and what is said of it.
+// Where bodies go while Newton's method seeks an equilibrium, and what is said if it finds none.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,6 +44,14 @@ BodyIndex Equilibrium::farthest_mover(const State& state, const State& before) c
     if (part > farthest) farthest = part, mover = b;
   }
   return mover;
+}
+
+// Whether a body has come to another place than it had, which is not near the last equilibrium.
+void Equilibrium::note_move(const State& state, const State& before, LoadStep& result) const {
+  const BodyIndex mover = farthest_mover(state, before);
+  if (mover < 0) return;
+  const double way = motion_of(model_, state, before, mover).most() - driven_way_;
+  if (way > inradius_[mover]) result.moved = mover, result.way = way;
 }
 
 Departure Equilibrium::departure_of(BodyIndex body, const State& state, const State& before) const {

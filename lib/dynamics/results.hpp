@@ -78,13 +78,17 @@ struct LoadStep {
   /// Size of the sum of all forces on each body, rigid ones first, N. Of a rigid body with that of
   /// the moments over its radius; 0 where it is not free.
   std::vector<double> off{};
+  /// The free body that has moved farthest, beyond what prescribed motion does, if that is more
+  /// than its inradius; and how far, m.
+  BodyIndex moved = -1;
+  double way = 0;
   bool complete = true;  ///< false: stopped on the way
   bool found = true;     ///< false: there is no equilibrium near the last one
 
   void fields(Archive& archive) {
     archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(
-        "worst", worst)("load", load)("off", off)("relaxed", relaxed)("negative_pivots",
-                                                                      negative_pivots);
+        "worst", worst)("load", load)("off", off)("relaxed", relaxed)(
+        "negative_pivots", negative_pivots)("moved", moved)("way", way);
   }
 };
 

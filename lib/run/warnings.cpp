@@ -54,6 +54,21 @@ void warn_of_instability(std::span<const LoadStep> steps, std::vector<std::strin
       first->negative_pivots, first->negative_pivots == 1 ? "" : "s"));
 }
 
+// Statics does not know the motion between equilibria.
+void warn_of_moves(const Model& model, std::span<const LoadStep> steps,
+                   std::vector<std::string>& warnings) {
+  const auto first = std::ranges::find_if(steps, [](const LoadStep& s) { return s.moved >= 0; });
+  if (first == steps.end()) return;
+  warnings.push_back(
+      fmt::format("\"{}\" has moved by {:.3g} m, {:.3g} times its inradius, in the load step to t "
+                  "= {:.6g} s: it "
+                  "has tipped over or slid to another place, and statics does not know whether it "
+                  "would come to "
+                  "rest there; \"load_steps\": \"auto\" finds the load at which it lets go",
+                  model.name_of(first->moved), first->way,
+                  first->way / inradius_of(model, first->moved), first->time));
+}
+
 // Free bodies that are below all others along gravity, by more than the size of any: nothing can
 // catch them.
 std::vector<RigidIndex> falling_for_ever(const Model& model, const State& state) {
@@ -97,6 +112,7 @@ std::vector<std::string> warnings_of(const Model& model, const Extremes& extreme
                                      std::span<const LoadStep> steps) {
   std::vector<std::string> warnings;
   warn_of_instability(steps, warnings);
+  warn_of_moves(model, steps, warnings);
   warn_of_energy(extremes, warnings);
   warn_of_penetration(model, extremes.relative_penetration, warnings);
   return warnings;

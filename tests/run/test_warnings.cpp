@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "lib/run/hash.hpp"
@@ -148,4 +149,44 @@ TEST_CASE("a penetration that gives no stiffness is an error", "[run][warnings]"
   CHECK_THAT(message(R"("penetration": 0.01)", true),
              Catch::Contains("/contact/penetration: gives no stiffness"));
   CHECK_THAT(message(""), Catch::Contains("normal_stiffness"));
+}
+
+TEST_CASE("a static run says which body has gone to another place", "[run][warnings]") {
+  const Folder folder;
+  const std::string body = GENERATE(
+      R"("polygon": [[0, 0], [0.4, 0], [0.4, 1], [0, 1]])",
+      R"("mesh": { "rectangle": { "size": [0.4, 1], "cells": [4, 6] }, "element": "Q4" })");
+  CAPTURE(body);
+  // It stands up to a tilt of atan(.4). Beyond, it finds no equilibrium, or one on its side.
+  const auto run_to = [&](double tilt) {
+    auto run = std::make_unique<Run>(scene_of(folder, fmt::format(R"({{
+      "gravity": {{ "value": [0, -9.81], "direction_history": [[0, 0], [1, {}]] }},
+      "materials": {{ "rock": {{ "density": 2000, "young": 1e9, "poisson": 0.2 }} }},
+      "contact": {{ "normal_stiffness": 1e9, "friction": {{ "coefficient": 0.8 }} }},
+      "bodies": [
+        {{ "name": "table", "material": "rock", "motion": "fixed", "polygon": [[-5, -1], [5, -1], [5, 0], [-5, 0]] }},
+        {{ "name": "block", "material": "rock", {} }} ],
+      "time": {{ "mode": "static", "end": 1, "load_steps": {} }} }})",
+                                                                  tilt, body, tilt > .5 ? 6 : 3)),
+                                     RunSettings{});
+    run->run();
+    return run;
+  };
+  const auto stands = run_to(.33);
+  CHECK(stands->status() == Run::Status::done);
+  CHECK(stands->warnings().empty());
+  int lying = 0;
+  for (const double tilt : {.45, .5, .6}) {
+    const auto tips = run_to(tilt);
+    CAPTURE(tilt, tips->message());
+    if (tips->status() == Run::Status::done) {
+      ++lying;
+      REQUIRE(tips->warnings().size() == 1);
+      CHECK_THAT(tips->warnings()[0], Catch::Contains("\"block\" has moved by") &&
+                                          Catch::Contains("in the load step to t = "));
+    } else {
+      CHECK_THAT(tips->message(), Catch::Contains("\"block\""));
+    }
+  }
+  CHECK(lying > 0);
 }
