@@ -293,8 +293,9 @@ LoadStep Equilibrium::solve(State& state, const State& before, double time,
     }
     // Where bodies of finite elements stick and slip on stiff contacts the method may go round in
     // circles at an equilibrium.
-    const bool circles = !settling_ && departed_ < 0 && !model_.deformables.empty();
+    const bool circles = !settling_ && departed_ < 0 && contact_ && !model_.deformables.empty();
     if (tangent_known_ && !circles) refuse(state, result);
+    after_newton_ = tangent_known_;
     state = before;
   }
   return relax(state, before, time, stop);
@@ -384,6 +385,7 @@ void Equilibrium::fields(Archive& archive) {
   }
   if (!pause_) pause_ = {0, 0, 0, mass_, mass_};
   archive("time", pause_->time)("until", pause_->until)("steps", pause_->steps);
+  archive("after_newton", after_newton_)("at_end", at_end_.words);
   archive.sized("x", pause_->x).sized("v", pause_->v);
   archive("kinetic", kinetic_);
   archive.sized("mass", mass_).sized("inverse", inverse_).sized("velocity", velocity_);

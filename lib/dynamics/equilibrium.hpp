@@ -212,6 +212,7 @@ class Equilibrium {
   std::vector<double> flat_;      // of rigid bodies: stiffness if they lay flat on each other, N/m
   std::vector<double> inradius_;  // of free bodies; of others 0, m
   double extent_ = 0;             // of the scene, m
+  bool after_newton_ = false;     // whether it is relaxed because Newton's method has found nothing
   bool tangent_known_ = true;     // false if a term does not know its tangent
   Departure departure_;           // what the first body does that leaves its place
   BodyIndex departed_ = -1;       // this body

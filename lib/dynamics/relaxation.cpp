@@ -28,7 +28,7 @@ constexpr int kCheckedEvery = 10;
 constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
 constexpr double kLeast = 1e-3;     // of a rigid body's mass if it lay flat on another one
-constexpr std::int64_t kMostSteps = 300'000;
+constexpr std::int64_t kMostSteps = 300'000, kMostAfterNewton = 60'000;
 
 }  // namespace
 
@@ -182,6 +182,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
       if (!std::isfinite(result.residual)) {
         refuse_diverged(state, model_.name_of(std::max(result.unbalanced, 0)));
       }
+      if (after_newton_ && step >= kMostAfterNewton) refuse(state, result);
       if (step >= kMostSteps) refuse_relaxation(state, result);
     }
     move(state, step == 0);
