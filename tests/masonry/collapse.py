@@ -67,7 +67,7 @@ def with_meshes(scene, every, size):
 
 
 def of_meshes(every):
-    return "" if every == 0 else " of finite elements" if every == 1 else f", one of {every} of finite elements"
+    return ["", " of finite elements", ", every second one of finite elements"][every]
 
 
 def sector_masses(n, thickness, angle=math.pi, radius=10.):
