@@ -57,6 +57,7 @@ std::vector<EigenPair> lowest_above(SymmetricSystem& system, double shift, int b
   for (int pass = 0; pass < kMostPasses && wanted > 0; ++pass) {
     const double at = system.shift(shift);
     std::vector<EigenPair> known;
+    known.reserve(found.size());
     for (const EigenPair& p : found) known.push_back({1 / (p.value - at), p.vector});
     const Eigen::Index most = std::min<Eigen::Index>(wanted, system.size() - 1);
     const auto [values, vectors] = largest_inverse_pairs(system, most, known);
