@@ -6,6 +6,7 @@
 #include "apps/benchmark/bench.hpp"
 #include "apps/benchmark/piles.hpp"
 #include "apps/cases/samples.hpp"
+#include "lib/dynamics/islands.hpp"
 #include "lib/dynamics/simulation.hpp"
 #include "lib/system/clock.hpp"
 
@@ -39,6 +40,18 @@ Model boxes(int rows, bool pyramid, double stiffness) {
   return model;
 }
 
+// Columns of boxes on a plate, and a last box beside them.
+Model columns(int count, int rows, double stiffness) {
+  Model model = empty_model();
+  model.contact.normal_stiffness = stiffness;
+  add_wall(model, -4 * kSide, -1, 2 * count * kSide, 0);
+  for (int i = 0; i < count; ++i) {
+    for (int row = 0; row < rows; ++row) add_box(model, 2 * i * kSide, row * kSide);
+  }
+  add_box(model, -2 * kSide, 0);
+  return model;
+}
+
 struct Rest {
   Model model;
   std::unique_ptr<Simulation> verlet, automatic;
@@ -46,18 +59,16 @@ struct Rest {
   double seconds = 0, time = 0;                // the same with implicit steps
 };
 
-std::unique_ptr<Simulation> settled(const Model& model, TimeScheme scheme, int threads) {
-  TimeSettings time{.end = kEnd, .longest_step = kInterval};
+std::unique_ptr<Simulation> settled(const Model& model, TimeScheme scheme, int threads,
+                                    double end = kEnd) {
+  TimeSettings time{.end = end, .longest_step = kInterval};
   time.scheme = scheme;
   time.settled = true;
   return std::make_unique<Simulation>(model, time, 1, threads);
 }
 
-Work rest(int rows, bool pyramid, double stiffness, int threads) {
-  const auto both = std::make_shared<Rest>();
-  both->model = boxes(rows, pyramid, stiffness);
-  both->verlet = settled(both->model, TimeScheme::verlet, threads);
-  both->automatic = settled(both->model, TimeScheme::automatic, threads);
+// `rows`: of the output, in each repetition.
+Work compare(const std::shared_ptr<Rest>& both, int rows) {
   const auto timed = [](double& seconds, double& time, Simulation& simulation, const auto& run) {
     const double from = simulation.state().time, begin = processor_time();
     run();
@@ -69,7 +80,10 @@ Work rest(int rows, bool pyramid, double stiffness, int threads) {
                 Simulation& s = *both->automatic;
                 const double from = s.state().time;
                 timed(both->seconds, both->time, s, [&] {
-                  for (int i = 1; i <= 600; ++i) s.step(s.state().time + kInterval);
+                  const double begin = s.state().time;
+                  for (int i = 1; i <= rows; ++i) {
+                    while (s.state().time < begin + i * kInterval) s.step(begin + i * kInterval);
+                  }
                 });
                 return s.state().time - from;
               },
@@ -87,6 +101,31 @@ Work rest(int rows, bool pyramid, double stiffness, int threads) {
               }};
 }
 
+Work rest(int rows, bool pyramid, double stiffness, int threads) {
+  const auto both = std::make_shared<Rest>();
+  both->model = boxes(rows, pyramid, stiffness);
+  both->verlet = settled(both->model, TimeScheme::verlet, threads);
+  both->automatic = settled(both->model, TimeScheme::automatic, threads);
+  return compare(both, 600);
+}
+
+// The last box flies for as long as the run lasts.
+Work flight(int count, int rows, double stiffness, int threads) {
+  constexpr double kFlight = 40;  // s
+  const auto both = std::make_shared<Rest>();
+  both->model = columns(count, rows, stiffness);
+  both->verlet = settled(both->model, TimeScheme::verlet, threads, kFlight);
+  both->automatic = settled(both->model, TimeScheme::automatic, threads, kFlight);
+  for (Simulation* simulation : {both->verlet.get(), both->automatic.get()}) {
+    std::vector<double> velocities(simulation->state().v.size(), 0);
+    velocities[velocities.size() - 2] = kFlight * -both->model.gravity.y() / 2;
+    simulation->set_velocities(velocities);
+  }
+  Simulation& automatic = *both->automatic;
+  while (automatic.islands()->count() < count * rows) automatic.step();
+  return compare(both, 12);
+}
+
 }  // namespace
 
 std::vector<BenchmarkCase> rest_cases() {
@@ -101,6 +140,10 @@ std::vector<BenchmarkCase> rest_cases() {
   enter("stack/10", 10, false, 2e9);
   enter("stack/30", 30, false, 2e9);
   enter("pyramid/465", 30, true, 2e8);
+  cases.push_back({.name = "rest/flight/3000",
+                   .item = "simulated s",
+                   .about = "boxes at rest, while another one flies",
+                   .prepare = [](int threads) { return flight(100, 30, 2e9, threads); }});
   return cases;
 }
 

@@ -57,7 +57,9 @@ bool Contacts::search_if_stale() {
 // Hands the pairs of the last search to the kernels that serve them.
 void Contacts::hand_out_pairs() {
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
+  disturbs_rest_ = false;
   for (const BoxPair& pair : search_.pairs()) {
+    disturbs_rest_ = disturbs_rest_ || is_between_rest_and_motion(pair);
     pairs_of[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
   }
   for (SurfaceIndex i = 0; table_.self() && i < surfaces_.size(); ++i) {
@@ -68,6 +70,25 @@ void Contacts::hand_out_pairs() {
   for (size_t k = 0; k < kernels_.size(); ++k) {
     if (kernels_[k]) kernels_[k]->set_pairs(pairs_of[k]);
   }
+}
+
+bool Contacts::is_between_rest_and_motion(const BoxPair& pair) const {
+  const auto between = [&](SurfaceIndex a, SurfaceIndex b) {
+    return surfaces_.is_resting(a) && surfaces_.moves(b);
+  };
+  return between(pair.first, pair.second) || between(pair.second, pair.first);
+}
+
+void Contacts::let_bodies_rest(const ContactLaw& law, double thickness) {
+  resting_ = std::make_unique<RestingContacts>(surfaces_, law, table_, thickness);
+}
+
+void Contacts::set_resting(const std::vector<std::uint8_t>& resting, const Kinematics& now) {
+  surfaces_.set_resting(resting);
+  search_.choose(surfaces_, threads_);
+  hand_out_pairs();
+  resting_->exchange(memory_);
+  resting_->evaluate(search_.near(), now);
 }
 
 void Contacts::evaluate() {
@@ -85,7 +106,8 @@ std::vector<Contact> Contacts::contacts() const {
 }
 
 int Contacts::count() const {
-  return sum<int>([](const Kernel& kernel) { return kernel.summary().count; });
+  return sum<int>([](const Kernel& kernel) { return kernel.summary().count; }) +
+         (resting_ ? resting_->kernel().summary().count : 0);
 }
 
 std::optional<ContactFault> Contacts::fault() const {
@@ -134,6 +156,7 @@ void Contacts::add_forces(ForceViews forces) {
     forces.beside = beside_;
   }
   each([&](Kernel& kernel) { kernel.add_forces(forces); });
+  if (resting_) resting_->add_forces(forces.rigid);
 }
 
 void Contacts::add_dashpots(const Kinematics& now, const Dashpots::Motion& motion, double dt,
@@ -198,7 +221,8 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const ContactKey& key) const {
 }
 
 double Contacts::energy() const {
-  return sum<double>([](const Kernel& k) { return k.energy(); }) + memory_.energy();
+  const double moving = sum<double>([](const Kernel& k) { return k.energy(); }) + memory_.energy();
+  return resting_ ? moving + resting_->energy() : moving;
 }
 
 size_t Contacts::candidates() const {
@@ -284,7 +308,7 @@ void Contacts::add_force_sizes(std::span<double> of_bodies) const {
 
 std::vector<double> Contacts::friction_sizes() const {
   std::vector<double> sizes(static_cast<size_t>(surfaces_.body_count()));
-  for (const Spring& spring : memory_.springs()) {
+  for (const Spring& spring : springs()) {
     const auto [a, b] = bodies(spring.key);
     sizes[a] += std::abs(spring.force);
     sizes[b] += std::abs(spring.force);
@@ -294,8 +318,25 @@ std::vector<double> Contacts::friction_sizes() const {
 
 std::vector<ContactRecord> Contacts::records() const {
   std::vector<ContactRecord> records;
-  each([&](const Kernel& kernel) { kernel.add_records(records); });
+  for (size_t k = 0; k < kernels_.size(); ++k) {
+    if (kernels_[k]) kernels_[k]->add_records(records);
+    if (k != polygon_kernel || !resting_) continue;
+    const auto middle = static_cast<std::ptrdiff_t>(records.size());
+    const std::vector<ContactRecord>& resting = resting_->records();
+    records.insert(records.end(), resting.begin(), resting.end());
+    const auto pair = [](const ContactRecord& record) { return std::pair(record.a, record.b); };
+    std::ranges::inplace_merge(records, records.begin() + middle, {}, pair);
+  }
   return records;
+}
+
+std::vector<Spring> Contacts::springs() const {
+  const std::span<const Spring> moving = memory_.springs();
+  if (!resting_) return {moving.begin(), moving.end()};
+  std::vector<Spring> all;
+  std::ranges::merge(moving, resting_->memory().springs(), std::back_inserter(all), {},
+                     &Spring::key, &Spring::key);
+  return all;
 }
 
 std::vector<SurfaceRecord> Contacts::surface_records() const {
@@ -323,6 +364,7 @@ void Contacts::refresh(const Kinematics& now) {
     search_if_stale();
   }
   evaluate();
+  if (resting_) resting_->evaluate(search_.near(), now);
   if (!tangential_) return;
   FrictionMemory memory = memory_;
   memory.begin_step();
@@ -358,6 +400,7 @@ void Contacts::fields(Archive& archive) {
   if (tangential_) archive("beside", beside_);
   if (table_.damped()) archive("dashpots", dashpots_);
   each([&](Kernel& kernel) { kernel.fields(archive); });
+  if (resting_) archive("resting", *resting_);
   SearchPlaces places = search_.places(surfaces_);
   archive("search", places);
   if (archive.loads()) kept_search_ = std::move(places);

@@ -19,6 +19,7 @@
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/law.hpp"
 #include "lib/contact/law/pair_table.hpp"
+#include "lib/contact/resting_contacts.hpp"
 #include "lib/contact/surface/search.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 
@@ -47,6 +48,17 @@ class Contacts {
     surfaces_.set_absent(absent);
     forget_search();
   }
+  /// Makes it possible that rigid bodies rest. The arguments are those of the constructor.
+  void let_bodies_rest(const ContactLaw& law, double thickness);
+  /// The rigid bodies with a nonzero entry rest from now on: they stay where they are, and contacts
+  /// in which nothing can move stay as they are. The bodies must be where the surfaces are.
+  void set_resting(const std::vector<std::uint8_t>& resting, const Kinematics& now);
+  /// Marks resting bodies before refresh(), after `fields` has loaded a checkpoint.
+  void restore_resting(const std::vector<std::uint8_t>& resting) { surfaces_.set_resting(resting); }
+  /// True if, in the last search, a body that can move was near one that rests.
+  [[nodiscard]] bool disturbs_rest() const { return disturbs_rest_; }
+  /// All pairs of surfaces that were near each other in the last search.
+  [[nodiscard]] std::span<const BoxPair> near() const { return search_.near(); }
   /// Searches for candidate pairs if those of the last search are no longer valid. Returns true if
   /// it did.
   bool search_if_stale();
@@ -85,6 +97,7 @@ class Contacts {
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const ContactKey& key) const;
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
+  /// Without the contacts of bodies that rest.
   [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
 
   /// True if there is friction or damping.
@@ -137,9 +150,7 @@ class Contacts {
   /// One record for each contact patch.
   [[nodiscard]] std::vector<ContactRecord> records() const;
   /// The friction springs of all contacts, in ascending order of their keys.
-  [[nodiscard]] std::vector<Spring> springs() const {
-    return {memory_.springs().begin(), memory_.springs().end()};
-  }
+  [[nodiscard]] std::vector<Spring> springs() const;
   /// The boundary edges that take part in contact with meshes.
   [[nodiscard]] std::vector<SurfaceRecord> surface_records() const;
 
@@ -158,6 +169,7 @@ class Contacts {
 
  private:
   void hand_out_pairs();
+  [[nodiscard]] bool is_between_rest_and_motion(const BoxPair& pair) const;
   // Calls show(contact) for the contacts that may be deeper than `least`, m.
   void visit(double least, const ContactVisitor& show) const;
   template <class F>
@@ -178,9 +190,11 @@ class Contacts {
   PairTable table_;
   FrictionLaw friction_law_;
   Search search_;
+  bool disturbs_rest_ = false;
   std::optional<SearchPlaces> kept_search_;  // places that the next refresh() searches at
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
-  bool tangential_;  // true if there is friction or damping
+  std::unique_ptr<RestingContacts> resting_;  // null if bodies cannot rest
+  bool tangential_;                           // true if there is friction or damping
   FrictionMemory memory_;
   Dashpots dashpots_;
   // Forces of friction and damping on rigid bodies, N and N m, in this step and in the step before.

@@ -89,6 +89,16 @@ class ContactTerm final : public Term {
 
   void set_absent(const std::vector<std::uint8_t>& absent) { contacts_.set_absent(absent); }
 
+  /// See Contacts for these.
+  void let_bodies_rest() { contacts_.let_bodies_rest(model_.contact, model_.thickness); }
+  void set_resting(const std::vector<std::uint8_t>& resting, const State& state) {
+    contacts_.set_resting(resting, state.kinematics(state.v));
+  }
+  void restore_resting(const std::vector<std::uint8_t>& resting) {
+    contacts_.restore_resting(resting);
+  }
+  [[nodiscard]] bool disturbs_rest() const { return contacts_.disturbs_rest(); }
+
   /// See Simulation::inherit.
   void inherit(const FrictionMemory& memory) { contacts_.set_memory(memory); }
 

@@ -64,16 +64,40 @@ std::pair<size_t, size_t> DegreesOfFreedom::coordinates(BodyIndex body) const {
 }
 
 void DegreesOfFreedom::set_absent(const std::vector<std::uint8_t>& absent) {
+  absent_ = absent;
+  take_out();
+}
+
+void DegreesOfFreedom::set_resting(const std::vector<std::uint8_t>& resting, const State& state) {
+  resting_ = resting;
+  take_out();
+  resting_energy_ = 0;
+  for (size_t axis = 0; axis < 3; ++axis) held_[axis].resize(held_at_start_[axis]);
+  for (size_t c = 0; c < 3 * resting_.size(); ++c) {
+    if (resting_[c / 3] == 0 || is_held(c)) continue;
+    held_[c % 3].push_back({c, c % 3 == 0 ? c + 1 : c - 1, 0});
+    if (given_acceleration_.empty()) continue;
+    resting_energy_ -=
+        given_acceleration_[c] * mass_[c] * ((state.x[c] - start_[c]) + state.remainder[c]);
+  }
+}
+
+// Takes bodies out that are absent or rest, and puts those back that no longer are.
+void DegreesOfFreedom::take_out() {
   if (given_inverse_mass_.empty()) {
     given_inverse_mass_ = inverse_mass_;
     given_acceleration_ = full_acceleration_.empty() ? acceleration_ : full_acceleration_;
-    absent_.resize(absent.size());
+    out_.resize(model_.bodies.size() + model_.deformables.size());
+    for (size_t axis = 0; axis < 3; ++axis) held_at_start_[axis] = held_[axis].size();
   }
-  for (size_t b = 0; b < absent.size(); ++b) {
-    const bool present = absent[b] == 0;
-    if (present != (absent_[b] == 0)) set_present(static_cast<BodyIndex>(b), present);
+  const auto is_set = [](const std::vector<std::uint8_t>& flags, size_t b) {
+    return b < flags.size() && flags[b] != 0;
+  };
+  for (size_t b = 0; b < out_.size(); ++b) {
+    const bool out = is_set(absent_, b) || is_set(resting_, b);
+    if (out != (out_[b] != 0)) set_present(static_cast<BodyIndex>(b), !out);
+    out_[b] = out ? 1 : 0;
   }
-  absent_ = absent;
   weight_at_start_ = weight_at_start(weight_);
   if (!full_weight_.empty()) full_weight_at_start_ = weight_at_start(full_weight_);
 }
@@ -84,7 +108,8 @@ void DegreesOfFreedom::set_present(BodyIndex body, bool present) {
     inverse_mass_[c] = present ? given_inverse_mass_[c] : 0;
     if (acceleration_.empty()) continue;
     const double full = present ? given_acceleration_[c] : 0;
-    const double weight = full * mass_[c];
+    // As the constructor finds it, so that it has the same bits again.
+    const double weight = can_move(c) ? full / inverse_mass_[c] : 0;
     acceleration_[c] = gravity_factor_ * full;
     weight_[c] = gravity_factor_ * weight;
     if (!full_weight_.empty()) full_acceleration_[c] = full, full_weight_[c] = weight;
@@ -336,7 +361,7 @@ double DegreesOfFreedom::kinetic(const State& state) const {
 
 double DegreesOfFreedom::full_gravity_energy(const State& state) const {
   const std::vector<double>& weight = full_weight_.empty() ? weight_ : full_weight_;
-  double sum = 0;
+  double sum = resting_energy_;
   const size_t rigid = layout_.node(0);
   for (size_t c = 0; c < weight.size(); ++c) {
     // What rounding keeps out of the position counts: the fall may be far smaller than the height.

@@ -67,6 +67,10 @@ class DegreesOfFreedom {
   void set_absent(const std::vector<std::uint8_t>& absent);
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
+  /// Rigid bodies with a nonzero entry stay where they are in `state`, as if they were held there,
+  /// and weigh nothing. Their energy in gravity counts. Gravity must be that of the model.
+  void set_resting(const std::vector<std::uint8_t>& resting, const State& state);
+
   /// The coordinates of a body: the first one, and one behind the last.
   [[nodiscard]] std::pair<size_t, size_t> coordinates(BodyIndex body) const;
   /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
@@ -140,8 +144,12 @@ class DegreesOfFreedom {
   Impulse full_weight_at_start_;
   /// Of all bodies, at factor 1; empty while none has been taken out.
   std::vector<double> given_inverse_mass_, given_acceleration_;
-  std::vector<std::uint8_t> absent_;
+  std::vector<std::uint8_t> absent_, resting_;  // of each body; empty, or shorter: 0
+  std::vector<std::uint8_t> out_;               // whether it is one of these
+  std::array<size_t, 3> held_at_start_{};       // how many of `held_` do not rest
+  double resting_energy_ = 0;                   // in gravity, J
 
+  void take_out();
   void set_present(BodyIndex body, bool present);
   void push_servo(const Servo& servo, State& state, size_t first, double dt) const;
   [[nodiscard]] Impulse weight_at_start(const std::vector<double>& weight) const;

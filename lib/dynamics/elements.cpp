@@ -106,16 +106,28 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
 void Elements::add_forces(const Evaluation& now) {
   State& state = now.state;
   const Layout& layout = state.layout;
-  if (now.still && at_rest_.empty()) at_rest_.resize(layout.of_nodes(state.v).size());
+  span_ = now.still && elements_.damped() ? now.step.span : 0;
+  if (now.still) moved_.assign(layout.of_nodes(state.v).size(), 0);
+  if (span_ > 0) std::ranges::copy(layout.of_nodes(now.step.v), moved_.begin());
   const std::span<const double> velocity =
-      now.still ? std::span<const double>(at_rest_) : layout.of_nodes(state.v);
-  const double power = elements_.force(layout.of_nodes(state.x), velocity, layout.of_nodes(state.f),
-                                       now.trial ? 0 : now.dt / 2);
-  if (now.dt > 0 && !now.trial) {
+      now.still ? std::span<const double>(moved_) : layout.of_nodes(state.v);
+  const double lag = now.still ? span_ / 2 : now.trial ? 0 : now.dt / 2;
+  const double power =
+      elements_.force(layout.of_nodes(state.x), velocity, layout.of_nodes(state.f), lag);
+  if (!now.trial) book_damping(power, now);
+  now.clock.lap(Phase::elements);
+}
+
+void Elements::book_damping(double power, const Evaluation& now) {
+  if (now.dt > 0) {
     damping_power_ = power;
     summed_damping_loss_ += now.dt * power;
+    step_ = now.dt;
+    return;
   }
-  now.clock.lap(Phase::elements);
+  // Steps of velocity Verlet begin anew, or an implicit step has been taken.
+  summed_damping_loss_ = damping_loss(step_) + span_ * power;
+  first_damping_power_ = damping_power_ = now.still ? 0 : power;
 }
 
 Vec2 Elements::centre_of(const FiniteElements::Collapse& where) const {
@@ -157,16 +169,18 @@ void Elements::add_energies(const State& state, Energies& e) {
   e.strain += elements_.strain_energy(state.layout.of_nodes(state.x));
 }
 
-void Elements::add_losses(double dt, Energies& e) const {
-  // Of the last force only half a step has acted (-dt/2 [v.C.v] since the start), and each power
-  // was taken with the velocity half a step before its force: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
-  e.damping_loss += summed_damping_loss_ - dt / 4 * (damping_power_ - first_damping_power_);
+// Of the last force only half a step has acted (-dt/2 [v.C.v] since the start), and each power was
+// taken with the velocity half a step before its force: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
+double Elements::damping_loss(double dt) const {
+  return summed_damping_loss_ - dt / 4 * (damping_power_ - first_damping_power_);
 }
 
 void Elements::bound_step(StepBounds& bounds) { bounds.nodes = limit_; }
 
 bool Elements::add_tangent(const State& state, Tangent& tangent) const {
-  elements_.add_tangent(state.layout.of_nodes(state.x), state.layout.node(0), tangent);
+  const auto moved = span_ > 0 ? std::span<const double>(moved_) : std::span<const double>();
+  elements_.add_tangent(state.layout.of_nodes(state.x), state.layout.node(0), tangent, moved,
+                        span_);
   return true;
 }
 

@@ -86,9 +86,12 @@ void Equilibrium::find_forces(State& state) {
   for (size_t c = 0; c < displacement_.size(); ++c) {
     displacement_[c] = state.x[c] - slips_from_[c] + (slip_.empty() ? 0 : slip_[c]);
   }
+  for (size_t c = first_; span_ > 0 && c < moved_.size(); ++c) moved_[c] = displacement_[c] / span_;
   PhaseTimer off;
-  for (const auto& term : terms_)
-    term->add_forces({state, displacement_, 1, lambda_, off, 0, true, true, slip_});
+  for (const auto& term : terms_) {
+    term->add_forces(
+        {state, displacement_, 1, lambda_, off, 0, true, true, slip_, {span_, moved_}});
+  }
   for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[c] + weight(c);
   push_walls(state);
 }

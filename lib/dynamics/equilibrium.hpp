@@ -199,6 +199,8 @@ class Equilibrium {
   std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
   std::vector<double> slips_from_;        // the places from which friction counts
   std::vector<double> displacement_;      // since these
+  double span_ = 0;                       // of a step in time, s
+  std::vector<double> moved_;             // in it: velocities of all coordinates
   std::vector<double> slip_;     // what counts as displacement in contacts besides; or none
   std::vector<double> outside_;  // loads on nodes at the last equilibrium, N
   std::optional<Pause> pause_;

@@ -235,6 +235,14 @@ bool ImplicitSteps::is_balanced(const State& state) const {
   return off < kBalanced * kBalanced * all;
 }
 
+StepMotion ImplicitSteps::motion(const State& state) {
+  moved_.resize(state.x.size());
+  for (size_t c = state.layout.node(0); c < moved_.size(); ++c) {
+    moved_[c] = (state.x[c] - before_.x[c]) / h_;
+  }
+  return {h_, moved_};
+}
+
 // Forces are known to the rounding of places only. Where everything rests, velocities that followed
 // them would never die out: they are 0.
 const State& ImplicitSteps::finish(State& state) {

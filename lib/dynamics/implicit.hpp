@@ -50,6 +50,8 @@ class ImplicitSteps {
   /// as it was; terms have then to be refreshed. Throws Unstable if the scheme is `implicit` and
   /// there is no such step.
   std::int64_t try_step(State& state, const StepControl& control, std::int64_t most);
+  /// After such a step: how the coordinates have moved in it.
+  [[nodiscard]] StepMotion motion(const State& state);
   /// After such a step, when the forces at its end are in `state`: its velocities. Returns the
   /// state of the middle of the step, with its mean velocities.
   const State& finish(State& state);
@@ -101,6 +103,7 @@ class ImplicitSteps {
   // Of the step that is tried.
   State before_, middle_;
   std::vector<double> acceleration_, base_;  // at its start, m/s^2; see Equilibrium::step
+  std::vector<double> moved_;                // its mean velocities, m/s
   double h_ = 0;                             // its length, s
 };
 

@@ -103,15 +103,15 @@ class Cap {
       if (within(depth).length <= kGrowth * flat) return depth;
     }
     // The length grows with the depth, so that it bends the energy up: bisection between bounds.
-    constexpr int kParts = 16, kHalvings = 24;
+    constexpr int kPanels = 16, kHalvings = 24;
     const auto energy_at = [&](double depth) {  // Simpson's rule
       double sum = 0;
-      for (int k = 0; k <= kParts; ++k) {
-        const double x = depth * k / kParts;
-        const int weight = k == 0 || k == kParts ? 1 : 2 + 2 * (k % 2);
+      for (int k = 0; k <= kPanels; ++k) {
+        const double x = depth * k / kPanels;
+        const int weight = k == 0 || k == kPanels ? 1 : 2 + 2 * (k % 2);
         sum += weight * (depth - x) * within(x).length;
       }
-      return sum * depth / (3 * kParts);
+      return sum * depth / (3 * kPanels);
     };
     double low = 0, high = extent;
     for (int k = 0; k < kHalvings; ++k) {

@@ -462,6 +462,8 @@ bool Equilibrium::step(State& state, const State& before, const std::vector<doub
   path.shift = 1 / (h * h);
   path.base = base;
   slips_from_ = before.x;
+  span_ = h;
+  moved_.resize(before.x.size());
   double size = 0;
   bool known = false;
   for (int i = 0; i < kMostInStep; ++i) {

@@ -11,6 +11,7 @@
 #include "lib/dynamics/fold_watch.hpp"
 #include "lib/dynamics/gravity_history.hpp"
 #include "lib/dynamics/implicit.hpp"
+#include "lib/dynamics/islands.hpp"
 #include "lib/dynamics/loads.hpp"
 #include "lib/dynamics/mass_damping.hpp"
 #include "lib/model/columns.hpp"
@@ -62,6 +63,10 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   if (time.scheme != TimeScheme::verlet) {
     implicit_ = std::make_unique<ImplicitSteps>(model, time, dofs_, terms_, contact_);
   }
+  if (contact_ && Islands::needed(model, time, terms_)) {
+    islands_ = std::make_unique<Islands>(model, dofs_, time, state_);
+    contact_->let_bodies_rest();
+  }
   try {
     find_forces(state_.v, 0);
     if (time.settled) {
@@ -101,6 +106,8 @@ void Simulation::make_terms(int threads) {
 }
 
 void Simulation::add(std::unique_ptr<Term> term) {
+  wake_all();
+  islands_.reset();  // a term may push a body that rests
   terms_.push_back(std::move(term));
   if (state_.step > 0) {  // of a checkpoint, whose forces and ledger know of the term
     terms_.back()->refresh(state_);
@@ -179,7 +186,8 @@ bool Simulation::take_implicit_step(double horizon) {
     return false;
   }
   control_->advance(state_, ticks);
-  find_forces(state_.v, 0, 0, true);
+  const StepMotion motion = implicit_->motion(state_);
+  find_forces(state_.v, 0, 0, &motion);
   if (contact_) contact_->silence_dashpots(state_);
   const State& middle = implicit_->finish(state_);
   const double h = implicit_->length();
@@ -223,6 +231,8 @@ void Simulation::take_absent_out() {
 
 void Simulation::change_population(std::span<const BodyIndex> leave,
                                    std::span<const BodyIndex> come) {
+  const auto rests = [&](BodyIndex b) { return islands_ && islands_->is_resting(b); };
+  if (std::ranges::any_of(leave, rests)) wake_all();
   const double error = energies().total_error;
   const Impulse momentum = dofs_.momentum(state_);
   const auto mark = [&](BodyIndex b, Presence presence) {
@@ -245,6 +255,7 @@ void Simulation::change_population(std::span<const BodyIndex> leave,
 }
 
 void Simulation::set_velocities(std::span<const double> velocities) {
+  wake_all();
   const double error = energies().total_error;
   const Impulse momentum = dofs_.momentum(state_);
   for (size_t c = 0; c < velocities.size(); ++c) {
@@ -261,16 +272,57 @@ void Simulation::book_change(double error, const Impulse& momentum) {
       {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
 }
 
+// Looks who has come to rest, and wakes those that another body comes near.
+void Simulation::follow_rest(bool regular) {
+  const std::span<const BoxPair> near = contact_->contacts().near();
+  bool changed = contact_->disturbs_rest() && islands_->wake(state_, near);
+  if (regular) changed = islands_->look(state_, near) || changed;
+  if (changed) change_rest();
+}
+
+void Simulation::wake_all() {
+  if (islands_ && islands_->wake_all(state_)) change_rest();
+}
+
+// Bodies that rest stop, and bodies that have been woken begin to move from where they are.
+void Simulation::change_rest() {
+  const double error = energies().total_error;
+  const Impulse momentum = dofs_.momentum(state_);
+  const std::vector<std::uint8_t>& resting = islands_->resting();
+  for (size_t c = 0; c < 3 * resting.size(); ++c) {
+    if (resting[c / 3] != 0) state_.v[c] = 0;
+  }
+  dofs_.set_resting(resting, state_);
+  contact_->set_resting(resting, state_);
+  find_forces(state_.v, 0);
+  finish_look();
+  ledger_.refresh(state_);
+  const Impulse after = dofs_.momentum(state_);
+  ledger_.add_numerical_loss(error - energies().total_error);
+  ledger_.add_impulse(
+      {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
+  implicit_->disturb();
+}
+
 void Simulation::damp(double h) {
   for (const auto& term : terms_) term->damp(state_, h, ledger_);
 }
 
+// `implicit`: at the end of such a step.
 void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit,
-                             bool still) {
+                             const StepMotion* implicit) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
   std::ranges::fill(lambda_, 0.);
-  for (const auto& term : terms_)
-    term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit, false, still});
+  for (const auto& term : terms_) {
+    term->add_forces({.state = state_,
+                      .velocity = velocity,
+                      .dt = dt,
+                      .lambda = lambda_,
+                      .clock = clock_,
+                      .lambda_limit = lambda_limit,
+                      .still = implicit != nullptr,
+                      .step = implicit ? *implicit : StepMotion()});
+  }
 }
 
 bool Simulation::needs_forces_before() const {
@@ -367,6 +419,7 @@ void Simulation::watch(bool always) {
     for (const auto& term : terms_) term->watch(state_);
     if (!state_.turns.empty()) note_turns(model_, node_mass(), state_);
   }
+  if (islands_) follow_rest(regular);
   if (guard_.due(state_.step, losses(), counts().touching_now)) look_at_energy(false);
   if (!regular || !population_) return;
   const Population::Change change = population_->look(state_);
@@ -455,10 +508,15 @@ void Simulation::fields(Archive& archive) {
   for (size_t i = 0; i < terms_.size(); ++i) archive(fmt::format("term_{}", i).c_str(), *terms_[i]);
   if (equilibrium_) archive("equilibrium", *equilibrium_);
   if (implicit_) archive("implicit", *implicit_);
+  if (islands_) archive("islands", *islands_);
 }
 
 void Simulation::refresh() {
   if (population_) take_absent_out();
+  if (islands_) {
+    dofs_.set_resting(islands_->resting(), state_);
+    contact_->restore_resting(islands_->resting());
+  }
   for (const auto& term : terms_) term->refresh(state_);
   ledger_.refresh(state_);
   steps_before_ = state_.step;

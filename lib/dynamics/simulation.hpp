@@ -35,6 +35,7 @@ class ContactTerm;
 class Elements;
 class Equilibrium;
 class ImplicitSteps;
+class Islands;
 
 class Simulation {
  public:
@@ -108,6 +109,8 @@ class Simulation {
   [[nodiscard]] const StepChanges& step_changes() const { return control_->changes(); }
   /// Of scenes with implicit steps; null in others.
   [[nodiscard]] const ImplicitCounts* implicit_counts() const;
+  /// Of scenes whose bodies may rest while others move (islands.hpp); null in others.
+  [[nodiscard]] const Islands* islands() const { return islands_.get(); }
 
   /// Throws Unstable if the run has made energy (energy_guard.hpp). Dynamic steps see to this by
   /// themselves; it is asked once more where a run ends.
@@ -156,11 +159,14 @@ class Simulation {
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0,
-                   bool still = false);
+                   const StepMotion* implicit = nullptr);
   [[nodiscard]] bool needs_forces_before() const;
   bool finish_contact(double dt);
   void finish_look();
   void watch(bool always = false);
+  void follow_rest(bool regular);
+  void change_rest();
+  void wake_all();
   void look_at_energy(bool last);
   [[noreturn]] void refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const;
   [[nodiscard]] Energies losses() const;
@@ -176,6 +182,7 @@ class Simulation {
   ContactTerm* contact_ = nullptr;            // likewise
   std::unique_ptr<Equilibrium> equilibrium_;  // only in static scenes
   std::unique_ptr<ImplicitSteps> implicit_;   // only where the scheme asks for them
+  std::unique_ptr<Islands> islands_;          // only where bodies may rest
 
   std::unique_ptr<Population> population_;  // only where bodies come or go
   std::optional<StepControl> control_;

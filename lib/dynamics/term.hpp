@@ -16,6 +16,12 @@
 
 namespace apothem {
 
+/// How all coordinates have moved in an implicit step.
+struct StepMotion {
+  double span = 0;                 ///< length of the step, s
+  std::span<const double> v = {};  ///< mean velocities; those of rigid bodies are not read
+};
+
 /// What a term gets when it is asked for its forces.
 struct Evaluation {
   State& state;                      ///< x where forces are asked for, v half a step before
@@ -27,10 +33,13 @@ struct Evaluation {
   /// The static solver tries a state: nothing of it is recorded. `velocity` times `dt` is then the
   /// displacement since the start of the load step.
   bool trial = false;
-  /// An equilibrium is sought: no dashpot acts.
+  /// An equilibrium or the end of an implicit step is sought: no dashpot acts.
   bool still = false;
   /// The part of `velocity` that is slip alone, by which nothing has moved; may be empty.
   std::span<const double> slip = {};
+  /// Of an implicit step, which the damping of elements follows; without it none acts where all is
+  /// still.
+  StepMotion step = {};
 };
 
 /// Bounds of the stiffness that acts on nodes, for the static solver.

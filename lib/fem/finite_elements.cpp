@@ -469,11 +469,12 @@ CauchyStress FiniteElements::stress(std::span<const double> u, int set, int elem
 // Calls f(coordinates, matrix) with the stiffness matrix of every element, row after row; x of node
 // 0 is 0.
 void FiniteElements::each_stiffness(
-    std::span<const double> u,
+    std::span<const double> u, const Motion& motion,
     const std::function<void(std::span<const size_t>, std::span<const double>)>& f) const {
   constexpr size_t kAtOnce = 8;  // derivatives that are found in one pass over an element
   using Number = Dual<kAtOnce>;
-  std::vector<Point<Number>> moved, force;
+  const bool damped = !motion.v.empty();
+  std::vector<Point<Number>> moved, rate, force;
   std::vector<size_t> coordinates;
   std::vector<double> matrix;
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
@@ -487,19 +488,33 @@ void FiniteElements::each_stiffness(
     const size_t size = coordinates.size();
     matrix.resize(size * size);
     moved.resize(size / 2);
+    rate.resize(size / 2);
     force.resize(size / 2);
-    const Elastic& elastic = material(index, element).elastic;
+    const ElementMaterial& of_element = material(index, element);
+    const Elastic& elastic = of_element.elastic;
     with_law(elastic, [&]<class Law>(const Law& law) {
-      const Response<Law, false> response(law, elastic, 0, set.thickness);
+      const Response<Law, false> stiff(law, elastic, 0, set.thickness);
+      const Response<Law, true> stiff_and_damped(law, elastic, of_element.stiffness_damping,
+                                                 set.thickness, motion.span / 2);
       for (size_t from = 0; from < size; from += kAtOnce) {
         const size_t end = std::min(from + kAtOnce, size);
         for (size_t i = 0; i < size / 2; ++i) moved[i] = {w[i].x, w[i].y};
+        for (size_t i = 0; damped && i < size / 2; ++i) {
+          rate[i] = {motion.v[coordinates[2 * i]], motion.v[coordinates[2 * i + 1]]};
+        }
+        const auto vary = [&](std::vector<Point<Number>>& points, size_t j, double by) {
+          (j % 2 ? points[j / 2].y : points[j / 2].x).d.v[j - from] = by;
+        };
         for (size_t j = from; j < end; ++j) {
-          (j % 2 ? moved[j / 2].y : moved[j / 2].x).d.v[j - from] = 1;
+          vary(moved, j, 1);
+          if (damped) vary(rate, j, 1 / motion.span);
         }
         Number power(0.);
-        Element::force(Stored<Number>{data.base}, response, corners, moved.data(), moved.data(),
-                       force.data(), power);
+        const auto find = [&](const auto& response) {
+          Element::force(Stored<Number>{data.base}, response, corners, moved.data(), rate.data(),
+                         force.data(), power);
+        };
+        damped ? find(stiff_and_damped) : find(stiff);
         for (size_t i = 0; i < size; ++i) {
           const Number& component = i % 2 ? force[i / 2].y : force[i / 2].x;
           for (size_t j = from; j < end; ++j) matrix[i * size + j] = component.d.v[j - from];
@@ -512,15 +527,19 @@ void FiniteElements::each_stiffness(
 
 void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
   std::ranges::fill(sums, 0.);
-  each_stiffness(u, [&](std::span<const size_t> at, std::span<const double> k) {
+  each_stiffness(u, {}, [&](std::span<const size_t> at, std::span<const double> k) {
     for (size_t i = 0; i < k.size(); ++i) sums[at[i / at.size()]] += std::abs(k[i]);
   });
 }
 
-void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const {
-  each_stiffness(u, [&](std::span<const size_t> at, std::span<const double> k) {
+void FiniteElements::add_tangent(std::span<const double> u, size_t first, Tangent& tangent,
+                                 std::span<const double> v, double span) const {
+  const bool damped = !v.empty();
+  each_stiffness(u, {v, span}, [&](std::span<const size_t> at, std::span<const double> k) {
+    const size_t n = at.size();
     for (size_t i = 0; i < k.size(); ++i) {
-      tangent.add(first + at[i / at.size()], first + at[i % at.size()], k[i]);
+      const double symmetric = damped ? (k[i] + k[i % n * n + i / n]) / 2 : k[i];
+      tangent.add(first + at[i / n], first + at[i % n], symmetric);
     }
   });
 }

@@ -91,8 +91,11 @@ class FiniteElements {
 
   /// Adds the tangent stiffness K = d(internal forces)/du at the displacements `u` (m), N/m, in
   /// which node 0 has the coordinates `first` and `first` + 1. It is exact: the elements' own force
-  /// kernels are differentiated (lib/execution/dual.hpp). Damping does not count.
-  void add_tangent(std::span<const double> u, size_t first, Tangent& tangent) const;
+  /// kernels are differentiated (lib/execution/dual.hpp). With the velocities `v` (m/s) with which
+  /// the nodes have moved over the last `span` (s) damping counts, where force() has a lag of half
+  /// of that: the matrix is the symmetric part of the derivative of all forces.
+  void add_tangent(std::span<const double> u, size_t first, Tangent& tangent,
+                   std::span<const double> v = {}, double span = 0) const;
 
   /// Mean Cauchy stress of every element at the displacements `u` (m), in the order of the sets and
   /// of the elements in each mesh. Stress of damping is not included.
@@ -164,8 +167,13 @@ class FiniteElements {
              F&& f) const;
   template <class F>
   void each_element(std::span<const double> u, F&& f) const;
+  // How the nodes have moved over the last `span` (s), m/s; empty if damping does not count.
+  struct Motion {
+    std::span<const double> v;
+    double span = 0;
+  };
   void each_stiffness(
-      std::span<const double> u,
+      std::span<const double> u, const Motion& motion,
       const std::function<void(std::span<const size_t>, std::span<const double>)>& f) const;
 
   std::vector<ElementSet> sets_;

@@ -20,8 +20,14 @@ FrictionMemory memory_in(const nlohmann::json& simulation) {
   FrictionMemory memory;
   for (const auto& [name, term] : simulation.items()) {
     if (name.starts_with("term_") && term.is_object() && term.contains("contacts")) {
-      JsonLoader archive(term["contacts"]);
+      const nlohmann::json& contacts = term["contacts"];
+      JsonLoader archive(contacts);
       archive("friction", memory);
+      if (!contacts.contains("resting")) continue;
+      FrictionMemory of_resting;
+      JsonLoader resting(contacts["resting"]);
+      resting("friction", of_resting);
+      memory.absorb(of_resting);
     }
   }
   return memory;

@@ -3,6 +3,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "lib/dynamics/islands.hpp"
 #include "lib/output/files.hpp"
 #include "lib/run/hash.hpp"
 #include "lib/run/other_run.hpp"
@@ -203,6 +204,11 @@ std::string summary_text(const Run& run) {
                         {"rejected", implicit->rejected},
                         {"iterations", implicit->iterations},
                         {"numerical_loss", simulation.energies().numerical_loss}};
+  }
+  if (const Islands* islands = simulation.islands()) {
+    json["resting"] = {{"bodies", islands->count()},
+                       {"stopped", islands->stopped()},
+                       {"woken", islands->woken()}};
   }
   const ContactLaw& law = scene.model.contact;
   if (law.penetration) json["normal_stiffness"] = law.normal_stiffness;

@@ -221,9 +221,6 @@ inline constexpr auto kIncompatible = [] {
        {servo, implicit_steps, not_supported_yet,
         "a wall that holds a force moves by steps of velocity Verlet",
         "use \"scheme\": \"verlet\""},
-       {material_damping, implicit_steps, not_supported_yet,
-        "implicit steps do not know the damping of elements",
-        "leave out the \"damping\" of materials, or use \"scheme\": \"verlet\""},
        {element_surface, implicit_steps, not_supported_yet,
         "implicit steps need forces that are the gradient of an energy, and the nodal forces of "
         "element potentials are not",

@@ -4,6 +4,7 @@
 
 #include "apps/cases/samples.hpp"
 #include "lib/dynamics/simulation.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 #include "tests/dynamics/surface_models.hpp"
 #include "tests/shapes.hpp"
 #include "tests/support.hpp"
@@ -226,4 +227,68 @@ TEST_CASE("implicit steps: vibrations without damping are not drained little by 
   CAPTURE(unnoticed, times, simulation.implicit_counts()->phases);
   CHECK(simulation.energies().numerical_loss < times * unnoticed);
   CHECK(simulation.implicit_counts()->steps > 0);
+}
+
+// A beam of 2 m x .2 m, held at its left end, which its weight bends.
+Model damped_beam(double stiffness_damping) {
+  Material soft{"soft", 1000};
+  soft.elastic.young = 1e7;
+  soft.elastic.poisson = .3;
+  soft.stiffness_damping = stiffness_damping;
+  Model model = model_of(block({2, .2}, {20, 2}, ElementKind::quad4), soft);
+  model.gravity = {0, -9.81};
+  DeformableBody& body = model.deformables[0];
+  body.supports.push_back({nodes_at(body.mesh, 0), {true, true}, {}});
+  return model;
+}
+
+TEST_CASE("implicit steps: damping of elements converges to that of velocity Verlet",
+          "[implicit]") {
+  const Model model = damped_beam(.05);
+  Simulation verlet(model, implicit::time_of(TimeScheme::verlet), 1, 1);
+  while (verlet.state().time < .5 - 1e-9) verlet.step();
+  REQUIRE(verlet.energies().damping_loss > 100);
+  double before = 0, loss_before = 0;
+  for (const double step : {.01, .005, .0025}) {
+    Simulation simulation(model, implicit::fixed(step, .5), 1, 1);
+    while (simulation.state().time < .5 - 1e-9) simulation.step();
+    double off = 0;
+    for (size_t c = 0; c < verlet.state().x.size(); ++c) {
+      off = std::max(off, std::abs(simulation.state().x[c] - verlet.state().x[c]));
+    }
+    const double loss =
+        std::abs(simulation.energies().damping_loss - verlet.energies().damping_loss);
+    CAPTURE(step, off, before, loss, loss_before);
+    if (before > 0) CHECK((off < .6 * before && loss < .6 * loss_before));
+    CHECK(std::abs(simulation.energies().total_error) < 1e-9 * verlet.energies().strain);
+    before = off, loss_before = loss;
+  }
+  CHECK(before < .02 * 2);
+}
+
+TEST_CASE("implicit steps: a beam whose damping has brought it to rest lies where statics says",
+          "[implicit]") {
+  TimeSettings time = implicit::time_of(TimeScheme::automatic, 14);
+  time.accuracy = 1e-3;
+  const Model model = damped_beam(.1);
+  Simulation simulation(model, time, 1, 1);
+  double lost = 0;
+  while (simulation.state().time < time.end - 1e-9) {
+    simulation.step(time.end);
+    const Energies e = simulation.energies();
+    CHECK(e.damping_loss >= lost - 1e-9);
+    lost = e.damping_loss;
+  }
+  CHECK(simulation.implicit_counts()->ticks > simulation.state().step / 2);
+  TimeSettings statics;
+  statics.statics = true;
+  const Model undamped = damped_beam(0);
+  Simulation equilibrium(undamped, statics, 1, 1);
+  equilibrium.balance(1);
+  const std::vector<double>& x = simulation.state().x;
+  const std::vector<double>& y = equilibrium.state().x;
+  for (size_t c = 0; c < x.size(); ++c) CHECK(std::abs(x[c] - y[c]) < 1e-6);
+  const Energies e = simulation.energies();
+  CHECK(std::abs(e.total_error) < 1e-3 * e.damping_loss);
+  CHECK(e.numerical_loss < 1e-2 * e.damping_loss);
 }

@@ -7,7 +7,9 @@
 #include <random>
 #include <set>
 
+#include "lib/dynamics/islands.hpp"
 #include "lib/run/run.hpp"
+#include "tests/dynamics/term_of.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
 
@@ -108,6 +110,23 @@ const char* const kMeshOnFloor = R"({ "gravity": [0, -9.81],
   "time": { "end": 0.15 },
   "output": { "frames": 3, "history": { "interval": 0.002 } } })";
 
+// Columns with dashpots come to rest while a block flies, which then falls on one of them.
+const char* const kRestAndFlight = R"({ "gravity": [0, -9.81],
+  "materials": { "m": { "density": 2000 } },
+  "contact": { "normal_stiffness": 1e8, "friction": { "coefficient": 0.5 },
+               "damping": { "model": "viscous", "ratio": 0.3 } },
+  "bodies": [
+    { "name": "floor", "material": "m", "motion": "fixed", "polygon": [[-3, -1], [9, -1], [9, 0], [-3, 0]] },
+    { "name": "a", "material": "m", "polygon": [[0, 0.001], [1, 0.001], [1, 0.6], [0, 0.6]] },
+    { "name": "b", "material": "m", "polygon": [[0.1, 0.601], [0.9, 0.601], [0.9, 1.1], [0.1, 1.1]] },
+    { "name": "c", "material": "m",
+      "polygon": [[3, 0.001], [3.3, 0.001], [3.3, 0.2], [3.7, 0.2], [3.7, 0.001], [4, 0.001], [4, 0.6], [3, 0.6]] },
+    { "name": "d", "material": "m", "polygon": [[3.1, 0.601], [3.9, 0.601], [3.9, 1.1], [3.1, 1.1]] },
+    { "name": "flies", "material": "m", "velocity": [0.2, 4], "spin": 1,
+      "polygon": [[3.1, 1.3], [3.4, 1.3], [3.5, 1.6], [3.2, 1.7]] } ],
+  "time": { "end": 1.2, "scheme": "auto" },
+  "output": { "frames": 6, "history": { "interval": 0.01 } } })";
+
 }  // namespace
 
 TEST_CASE("shipped scenes that are stopped write the same files to the last byte",
@@ -160,4 +179,29 @@ TEST_CASE("runs with implicit steps that are stopped write the same files to the
     scene.time.scheme = scheme;
     check_resumed(scene, end / (kSanitized ? 10 : 1), long_run() ? 20 : 3, random);
   }
+}
+
+TEST_CASE("a run in which some bodies rest and are woken writes the same files when it is stopped",
+          "[resume][islands]") {
+  std::mt19937 random(42);
+  const Scene scene = read_scene_text(kRestAndFlight, "scene.json", {});
+  const Folder folder;
+  Run run(scene, {.folder = folder / "run"});
+  run.run(scene.time.end);
+  CHECK(run.simulation().islands()->stopped() >= 4);
+  CHECK(run.simulation().islands()->woken() == 2);
+  {
+    // Another run begins with the friction of those that rest as well.
+    Run first(scene, {.folder = folder / "first"});
+    REQUIRE(first.run(.7) == Run::Status::done);
+    REQUIRE(first.simulation().islands()->count() == 4);
+    const Run second(scene, {.folder = folder / "second", .from = folder / "first"});
+    const std::vector<Spring> before = springs(first.simulation());
+    const std::vector<Spring> after = springs(second.simulation());
+    REQUIRE(after.size() == before.size());
+    for (size_t i = 0; i < after.size(); ++i) {
+      CHECK(after[i].force == Approx(before[i].force).margin(1e-6));
+    }
+  }
+  check_resumed(scene, scene.time.end, long_run() ? 20 : 4, random);
 }

@@ -1,5 +1,8 @@
 #include "lib/contact/law/friction_memory.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace apothem {
 
 void FrictionMemory::begin_step() {
@@ -27,6 +30,16 @@ void FrictionMemory::restore(std::vector<Spring> springs, std::vector<PatchSegme
     energy_ += spring.energy();
     if (spring.key.law != polygon_kernel) balanced_ += spring.energy();
   }
+}
+
+void FrictionMemory::absorb(const FrictionMemory& other) {
+  const auto joined = []<class Record>(std::span<const Record> one, std::span<const Record> two) {
+    std::vector<Record> all;
+    std::ranges::merge(one, two, std::back_inserter(all), {}, &Record::key, &Record::key);
+    return all;
+  };
+  restore(joined(std::span<const Spring>(springs_.now()), other.springs()),
+          joined(std::span<const PatchSegment>(segments_.now()), other.segments().now()));
 }
 
 void FrictionMemory::end_step(double work) { loss_ -= work + (balanced_ - balanced_before_); }

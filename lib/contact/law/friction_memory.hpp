@@ -130,6 +130,8 @@ class FrictionMemory {
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
   /// Replaces the springs and boundary segments, in ascending order of their keys, at a restart.
   void restore(std::vector<Spring> springs, std::vector<PatchSegment> segments);
+  /// Takes over the springs and boundary segments of another memory, which has none of these.
+  void absorb(const FrictionMemory& other);
   /// Dashpots exert no force any more.
   void forget_pushes() {
     for (Spring& spring : springs_.now()) spring.push = 0;

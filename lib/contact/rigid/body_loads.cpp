@@ -16,6 +16,14 @@ BodyLoads::BodyLoads(const Surfaces& surfaces, int threads)
       workers_(static_cast<size_t>(threads_.count())) {}
 
 void BodyLoads::set_pairs(std::span<const BoxPair> pairs) {
+  std::vector<std::uint8_t> has_pairs(sums_.size(), 0);
+  for (const BoxPair& pair : pairs) {
+    has_pairs[static_cast<size_t>(pair.first)] = has_pairs[static_cast<size_t>(pair.second)] = 1;
+  }
+  busy_.clear();
+  for (size_t i = 0; i < has_pairs.size(); ++i) {
+    if (has_pairs[i] != 0) busy_.push_back(static_cast<RigidIndex>(i));
+  }
   if (threads_.count() == 1) return;
   first_partner_.resize(sums_.size());
   for (size_t i = 0; i < sums_.size(); ++i) first_partner_[i] = static_cast<RigidIndex>(i);
@@ -36,9 +44,10 @@ void BodyLoads::end() {
 void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> touching) {
   rates_.resize(sums_.size());
   fastest_.assign(workers_.size(), 0.);
-  threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int worker) {
+  threads_.chunks(static_cast<int>(busy_.size()), kAddTime, [&](int first, int end, int worker) {
     double fastest = 0;
-    for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+    for (int k = first; k < end; ++k) {
+      const auto i = static_cast<size_t>(busy_[static_cast<size_t>(k)]);
       const BodyLoad& sum = sums_[i];
       double* const f = &forces.rigid[3 * i];
       f[0] += sum.x;
@@ -53,8 +62,9 @@ void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> to
   // In most steps no pair is near the limit, and the rates of partners are not needed.
   const double most = 2 * *std::ranges::max_element(fastest_);
   if (most > forces.lambda_limit) find_rates(forces.lambda_limit, touching);
-  threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int) {
-    for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+  threads_.chunks(static_cast<int>(busy_.size()), kAddTime, [&](int first, int end, int) {
+    for (int k = first; k < end; ++k) {
+      const auto i = static_cast<size_t>(busy_[static_cast<size_t>(k)]);
       Rate& rate = rates_[i];
       forces.lambda[i] += rate.own + (most > forces.lambda_limit ? rate.partner : rate.own);
       rate = {};

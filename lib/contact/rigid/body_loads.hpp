@@ -70,6 +70,7 @@ class BodyLoads {
   const Surfaces& surfaces_;
   Threads threads_;
   std::vector<BodyLoad> sums_;             // sum of the loads of each rigid body
+  std::vector<RigidIndex> busy_;           // the bodies that have pairs, ascending
   std::vector<RigidIndex> first_partner_;  // for each body, the lowest number among itself and the
                                            // bodies that it may touch
   std::vector<DeferredLoads> workers_;

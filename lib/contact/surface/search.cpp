@@ -42,7 +42,10 @@ void Search::choose(const Surfaces& surfaces, const Threads& threads) {
     for (int i = first; i < end; ++i) {
       const BoxPair& pair = near_[static_cast<size_t>(i)];
       if (surfaces.body(pair.first) == surfaces.body(pair.second)) continue;
-      if (!surfaces.responsive(pair.first) && !surfaces.responsive(pair.second)) continue;
+      const auto responds = [&](SurfaceIndex s) {
+        return surfaces.responsive(s) && !surfaces.is_resting(s);
+      };
+      if (!responds(pair.first) && !responds(pair.second)) continue;
       chosen.push_back(pair);
     }
   });

@@ -33,9 +33,11 @@ class Search {
   [[nodiscard]] bool stale(const Surfaces& surfaces, const Threads& threads = Threads()) const;
   /// Makes the pairs stale.
   void forget() { kept_.clear(); }
-  /// Finds all pairs of near surfaces of two bodies, at least one of which forces can move. All
-  /// polygons must be at finite positions.
+  /// Finds all pairs of near surfaces of two bodies, at least one of which forces can move and does
+  /// not rest. All polygons must be at finite positions.
   void search(Surfaces& surfaces, const Threads& threads = Threads());
+  /// Chooses the pairs of the last search again, after other bodies have come to rest.
+  void choose(const Surfaces& surfaces, const Threads& threads = Threads());
   /// The positions of the last search.
   [[nodiscard]] SearchPlaces places(const Surfaces& surfaces) const;
   /// Repeats a search that had the given positions. The outlines remain at these positions.
@@ -43,12 +45,13 @@ class Search {
                  const Threads& threads = Threads());
   /// The pairs, ascending, with first < second.
   [[nodiscard]] std::span<const BoxPair> pairs() const { return pairs_; }
+  /// All pairs of near surfaces, ascending, also those of one body and those that nothing moves.
+  [[nodiscard]] std::span<const BoxPair> near() const { return near_; }
 
  private:
   static constexpr size_t kFew = 4;  // moved surfaces are few if they are less than one in kFew
 
   void search_all(Surfaces& surfaces, const Threads& threads);
-  void choose(const Surfaces& surfaces, const Threads& threads);
   /// Renews the boxes of moved surfaces only. Returns false if too many have moved.
   bool search_again(const Surfaces& surfaces, const Threads& threads);
 

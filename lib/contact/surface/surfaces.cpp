@@ -82,9 +82,18 @@ std::vector<double> Surfaces::slopes() const {
 
 void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {
   absent_ = absent;
+  find_moving();
+}
+
+void Surfaces::set_resting(const std::vector<std::uint8_t>& resting) {
+  resting_ = resting;
+  find_moving();
+}
+
+void Surfaces::find_moving() {
   moving_.clear();
   for (RigidIndex i = 0; i < rigid_count(); ++i) {
-    if (rigid_[i].moves && is_present(i)) moving_.push_back(i);
+    if (moves(i) && is_present(i)) moving_.push_back(i);
   }
 }
 

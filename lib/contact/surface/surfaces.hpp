@@ -84,6 +84,12 @@ class Surfaces {
   [[nodiscard]] bool is_present(SurfaceIndex i) const {
     return absent_.empty() || absent_[static_cast<size_t>(bodies_[i])] == 0;
   }
+  /// Marks the rigid bodies with a nonzero entry as resting: their surfaces stay where they are and
+  /// can be touched.
+  void set_resting(const std::vector<std::uint8_t>& resting);
+  [[nodiscard]] bool is_resting(SurfaceIndex i) const {
+    return static_cast<size_t>(i) < resting_.size() && resting_[static_cast<size_t>(i)] != 0;
+  }
 
   [[nodiscard]] int size() const { return static_cast<int>(kinds_.size()); }
   [[nodiscard]] SurfaceKind kind(SurfaceIndex i) const { return kinds_[i]; }
@@ -93,6 +99,10 @@ class Surfaces {
   [[nodiscard]] bool has_outlines() const { return outlines_.size() > 0; }
   [[nodiscard]] bool is_rigid(SurfaceIndex i) const { return kinds_[i] == SurfaceKind::polygon; }
   [[nodiscard]] const Rigid& rigid(RigidIndex i) const { return rigid_[i]; }
+  /// True if the body of a surface can move, by forces or as prescribed.
+  [[nodiscard]] bool moves(SurfaceIndex i) const {
+    return !is_rigid(i) || (rigid_[static_cast<size_t>(i)].moves && !is_resting(i));
+  }
   /// True if forces can move the body of a surface.
   [[nodiscard]] bool responsive(SurfaceIndex i) const {
     if (!is_rigid(i)) return true;
@@ -144,6 +154,7 @@ class Surfaces {
   /// Moves a polygon. Returns false and does not move it if its position is not finite.
   bool place_polygon(RigidIndex i, const Kinematics& now, const SineCosine& angle);
   void place_meshes(const Kinematics& now, const Threads& threads);
+  void find_moving();
 
   double polygon_skin_, mesh_skin_;
   bool collars_;
@@ -159,7 +170,8 @@ class Surfaces {
   std::vector<Body> deformable_;
   std::vector<Rigid> rigid_;
   std::vector<RigidIndex> moving_;
-  std::vector<std::uint8_t> absent_;  // for each body; empty if no body is absent
+  std::vector<std::uint8_t> absent_;   // for each body; empty if no body is absent
+  std::vector<std::uint8_t> resting_;  // for each rigid body; empty if none is resting
   PlacedShapes shapes_;
   std::vector<std::array<double, 3>> pose_;
   ElementSurfaces elements_;
