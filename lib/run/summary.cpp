@@ -206,9 +206,8 @@ std::string summary_text(const Run& run) {
                         {"numerical_loss", simulation.energies().numerical_loss}};
   }
   if (const Islands* islands = simulation.islands()) {
-    json["resting"] = {{"bodies", islands->count()},
-                       {"stopped", islands->stopped()},
-                       {"woken", islands->woken()}};
+    json["resting"] = {
+        {"bodies", islands->count()}, {"stopped", islands->stopped()}, {"woken", islands->woken()}};
   }
   const ContactLaw& law = scene.model.contact;
   if (law.penetration) json["normal_stiffness"] = law.normal_stiffness;
