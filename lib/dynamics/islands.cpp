@@ -91,6 +91,7 @@ void Islands::rouse(const State& state, RigidIndex body) {
 }
 
 bool Islands::look(const State& state, std::span<const BoxPair> near) {
+  if (ended_) return false;
   bool some = false;
   const auto bodies = static_cast<RigidIndex>(resting_.size());
   for (RigidIndex b = 0; b < bodies; ++b) {

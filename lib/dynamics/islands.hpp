@@ -37,6 +37,8 @@ class Islands {
   /// Wakes the islands that a moving body is near. True if there are any.
   bool wake(const State& state, std::span<const BoxPair> near);
   bool wake_all(const State& state);
+  /// From now on nothing comes to rest.
+  void end() { ended_ = true; }
 
   /// Of each rigid body: 1 if it rests.
   [[nodiscard]] const std::vector<std::uint8_t>& resting() const { return resting_; }
@@ -73,6 +75,7 @@ class Islands {
   double end_;                  // of the run, s
   std::vector<double> fall_;    // of each rigid body: what falls must have been seen to move, s
   std::vector<double> factor_;  // of each rigid body: on the times for which it must rest
+  bool ended_ = false;
   std::int64_t stopped_ = 0, woken_ = 0;
 };
 

@@ -107,7 +107,7 @@ void Simulation::make_terms(int threads) {
 
 void Simulation::add(std::unique_ptr<Term> term) {
   wake_all();
-  islands_.reset();  // a term may push a body that rests
+  if (islands_) islands_->end();  // a term may push a body that rests
   terms_.push_back(std::move(term));
   if (state_.step > 0) {  // of a checkpoint, whose forces and ledger know of the term
     terms_.back()->refresh(state_);

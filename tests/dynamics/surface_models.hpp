@@ -65,6 +65,16 @@ inline void add_floor(Model& model) {
   model.bodies.push_back(floor);
 }
 
+/// A rigid body, whose name is its number.
+inline RigidBody& add_body(Model& model, const Polygon& polygon, Motion motion = Motion::free) {
+  RigidBody body;
+  body.name = std::to_string(model.bodies.size());
+  body.motion = motion;
+  set_shape(body, polygon, model);
+  model.bodies.push_back(body);
+  return model.bodies.back();
+}
+
 struct Result {
   double energy = 0;    // largest error over the initial kinetic energy
   double momentum = 0;  // largest error over the first body's momentum

@@ -24,15 +24,6 @@ Model empty(double friction = 0) {
   return model;
 }
 
-RigidBody& add(Model& model, const Polygon& polygon, Motion motion = Motion::free) {
-  RigidBody body;
-  body.name = std::to_string(model.bodies.size());
-  body.motion = motion;
-  set_shape(body, polygon, model);
-  model.bodies.push_back(body);
-  return model.bodies.back();
-}
-
 TimeSettings time_of(TimeScheme scheme, double end = 10) {
   TimeSettings time;
   time.end = end;
@@ -49,9 +40,9 @@ TimeSettings fixed(double step, double end = 10) {
 // Two polygons that meet in free space, with friction.
 Model meeting(SeededRandom& random, double speed) {
   Model model = empty(.3);
-  add(model, samples::random_star_shaped(random, 7, .5)).velocity = {speed, 0};
-  add(model,
-      samples::posed(samples::random_star_shaped(random, 6, .5), {1.2, random.uniform(-.3, .3)}, 0))
+  add_body(model, samples::random_star_shaped(random, 7, .5)).velocity = {speed, 0};
+  add_body(model, samples::posed(samples::random_star_shaped(random, 6, .5),
+                                 {1.2, random.uniform(-.3, .3)}, 0))
       .velocity = {-speed, random.uniform(-.1, .1) * speed};
   return model;
 }
@@ -67,13 +58,13 @@ Model heap(SeededRandom& random, int rows, double gap) {
   Model model = empty(.5);
   model.gravity = {0, -9.81};
   model.contact.damping = {.3, .3, 0};
-  add(model, samples::block(-.2, -1, 3.2, 0), Motion::fixed);
-  add(model, samples::block(-.2, 0, 0, 4), Motion::fixed);
-  add(model, samples::block(3, 0, 3.2, 4), Motion::fixed);
+  add_body(model, samples::block(-.2, -1, 3.2, 0), Motion::fixed);
+  add_body(model, samples::block(-.2, 0, 0, 4), Motion::fixed);
+  add_body(model, samples::block(3, 0, 3.2, 4), Motion::fixed);
   for (int row = 0; row < rows; ++row) {
     for (int i = 0; i < 5; ++i) {
       const double half = random.uniform(.1, .25), x = .32 + .58 * i, y = row * (.3 + gap) + gap;
-      add(model, samples::block(x - half, y, x + half, y + .3));
+      add_body(model, samples::block(x - half, y, x + half, y + .3));
     }
   }
   return model;
@@ -85,10 +76,10 @@ Model heap(SeededRandom& random, int rows, double gap) {
 TEST_CASE("implicit steps: free flight is exact", "[implicit]") {
   Model model = implicit::empty();
   model.gravity = {0, -9.81};
-  RigidBody& body = implicit::add(model, samples::block(-.5, -.1, .5, .1));
+  RigidBody& body = add_body(model, samples::block(-.5, -.1, .5, .1));
   body.velocity = {3, 4};
   body.spin = 2;
-  implicit::add(model, samples::block(-100, -101, 100, -100), Motion::fixed);
+  add_body(model, samples::block(-100, -101, 100, -100), Motion::fixed);
   Simulation simulation(model, implicit::fixed(.05), 1, 1);
   const Vec2 start = simulation.state().pose(0).head<2>();
   while (simulation.state().time < 1) simulation.step();
@@ -106,8 +97,8 @@ TEST_CASE("implicit steps: a block slides to rest where friction says", "[implic
   const auto slide = [](double step) {
     Model model = implicit::empty(.4);
     model.gravity = {0, -9.81};
-    implicit::add(model, samples::block(-10, -1, 20, 0), Motion::fixed);
-    implicit::add(model, samples::block(-.5, 0, .5, .2)).velocity = {3, 0};
+    add_body(model, samples::block(-10, -1, 20, 0), Motion::fixed);
+    add_body(model, samples::block(-.5, 0, .5, .2)).velocity = {3, 0};
     TimeSettings time = implicit::fixed(step);
     time.settled = true;
     Simulation simulation(model, time, 1, 1);

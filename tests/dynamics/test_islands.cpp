@@ -5,6 +5,7 @@
 #include "apps/cases/samples.hpp"
 #include "lib/dynamics/islands.hpp"
 #include "lib/dynamics/simulation.hpp"
+#include "tests/dynamics/surface_models.hpp"
 #include "tests/dynamics/term_of.hpp"
 #include "tests/shapes.hpp"
 #include "tests/support.hpp"
@@ -37,15 +38,6 @@ std::vector<Kind> kinds() {
           {"rough tables with dashpots", true, .5, FrictionLaw::resultant, viscous}};
 }
 
-RigidBody& add(Model& model, const Polygon& polygon, Motion motion = Motion::free) {
-  RigidBody body;
-  body.name = std::to_string(model.bodies.size());
-  body.motion = motion;
-  set_shape(body, polygon, model);
-  model.bodies.push_back(body);
-  return model.bodies.back();
-}
-
 // A table, or a block, of 1 m x .6 m.
 Polygon piece(bool feet, double x, double y) {
   if (!feet) return samples::block(x, y, x + 1, y + .6);
@@ -64,15 +56,15 @@ Model stacks(SeededRandom& random, const Kind& kind) {
   model.contact.friction.stiffness_ratio = kind.friction > 0 ? 1 : 0;
   model.contact.friction_law = kind.law;
   model.contact.damping = kind.damping;
-  add(model, samples::block(-5, -1, 12, 0), Motion::fixed);
+  add_body(model, samples::block(-5, -1, 12, 0), Motion::fixed);
   for (int i = 0; i < kStacks; ++i) {
     for (int j = 0; j < kHigh; ++j) {
-      RigidBody& body =
-          add(model, piece(kind.feet, 3 * i + random.uniform(0, .05), .6 * j - 1e-4 * (j + 1)));
+      RigidBody& body = add_body(
+          model, piece(kind.feet, 3 * i + random.uniform(0, .05), .6 * j - 1e-4 * (j + 1)));
       body.held[0] = kind.friction == 0;  // or it could be anywhere
     }
   }
-  add(model, samples::block(-2, -1e-4, -1.5, .5));
+  add_body(model, samples::block(-2, -1e-4, -1.5, .5));
   ContactRule rough;
   rough.between = {{{true, 0}, {true, static_cast<int>(model.bodies.size()) - 1}}};
   rough.friction.emplace().coefficient = .5;
@@ -227,7 +219,7 @@ TEST_CASE("islands at rest: what comes from outside wakes them", "[islands]") {
 TEST_CASE("islands at rest: nothing rests beside a body of prescribed motion", "[islands]") {
   SeededRandom random(53);
   Model model = islands::stacks(random, islands::kinds()[1]);
-  RigidBody& driven = islands::add(model, samples::block(1.06, .01, 1.2, .5), Motion::prescribed);
+  RigidBody& driven = add_body(model, samples::block(1.06, .01, 1.2, .5), Motion::prescribed);
   driven.history.velocity = {{0, {0, 0}}, {2, {0, 0}}, {3, {1, 0}}};
   Simulation simulation(model, islands::settled(TimeScheme::automatic), 1, 1);
   std::vector<double> v(simulation.state().v.size(), 0);
@@ -250,9 +242,9 @@ TEST_CASE("islands at rest: slow motion is not taken for rest beyond the accurac
     time.settled = false;
     time.accuracy = std::pow(10, random.uniform(-5, -1));
     const double speed = std::pow(10, random.uniform(-9, 0)), way = .5 * time.accuracy;
-    islands::add(model, samples::block(0, 0, 1, 1)).velocity = {speed, 0};
-    islands::add(model, samples::block(5, 0, 6, 1)).velocity = {0, 0};
-    islands::add(model, samples::block(-5, 0, -4, 1)).velocity = {-3, 0};
+    add_body(model, samples::block(0, 0, 1, 1)).velocity = {speed, 0};
+    add_body(model, samples::block(5, 0, 6, 1)).velocity = {0, 0};
+    add_body(model, samples::block(-5, 0, -4, 1)).velocity = {-3, 0};
     Simulation simulation(model, time, 1, 1);
     islands::run_until(simulation, time.end);
     CAPTURE(speed, time.accuracy);
@@ -260,4 +252,25 @@ TEST_CASE("islands at rest: slow motion is not taken for rest beyond the accurac
     CHECK(simulation.islands()->is_resting(1));
     CHECK_FALSE(simulation.islands()->is_resting(2));
   }
+}
+
+TEST_CASE("islands at rest: nothing rests where a term of the user acts", "[islands]") {
+  // It pushes the lowest block of the first stack after a while.
+  struct Push final : Term {
+    [[nodiscard]] std::string describe() const override { return "push"; }
+    void add_forces(const Evaluation& now) override {
+      if (now.state.time > .3) now.state.f[3] += 1e5;
+    }
+  };
+  SeededRandom random(55);
+  const Model model = islands::stacks(random, islands::kinds()[1]);
+  Simulation simulation(model, islands::settled(TimeScheme::automatic), 1, 1);
+  islands::launch(simulation, -1);
+  islands::run_until(simulation, .2);
+  REQUIRE(islands::resting(simulation) > 0);
+  simulation.add(std::make_unique<Push>());
+  CHECK(islands::resting(simulation) == 0);
+  islands::run_until(simulation, .35);
+  CHECK(islands::resting(simulation) == 0);
+  CHECK(simulation.state().v[3] > .1);
 }
