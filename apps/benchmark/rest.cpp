@@ -122,7 +122,8 @@ Work flight(int count, int rows, double stiffness, int threads) {
     simulation->set_velocities(velocities);
   }
   Simulation& automatic = *both->automatic;
-  while (automatic.islands()->count() < count * rows) automatic.step();
+  const std::int64_t resting = std::int64_t{count} * rows;
+  while (automatic.islands()->count() < resting) automatic.step();
   return compare(both, 12);
 }
 
